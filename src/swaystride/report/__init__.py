@@ -1,0 +1,1 @@
+"""Pages: printed beside reproduced, participant flow, data quality, parameters, provenance."""

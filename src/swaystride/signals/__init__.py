@@ -1,0 +1,1 @@
+"""Signals that know no body: filters, gaps, orientation."""

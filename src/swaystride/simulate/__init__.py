@@ -1,0 +1,1 @@
+"""Simulated bodies, sensors and cohorts: raw files in vendor formats with known truth."""

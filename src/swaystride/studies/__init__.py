@@ -1,0 +1,1 @@
+"""The studies: each reads like the methods section of its paper."""

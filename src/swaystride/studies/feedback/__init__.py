@@ -1,0 +1,1 @@
+"""Balance training with concurrent or terminal visual feedback (dissertation, chapter 2)."""

@@ -1,0 +1,1 @@
+"""The same code on public real recordings, against numbers that others published."""
