@@ -37,18 +37,31 @@ def imported_modules(file: Path) -> tuple[str, ...]:
             names = [f"{node.module}.{alias.name}" for alias in node.names] + [node.module]
         else:
             continue
-        found.update(
-            name for name in names if name.split(".")[0] == PACKAGE and module_file(name)
-        )
+        found.update(name for name in names if name.split(".")[0] == PACKAGE and module_file(name))
     return tuple(sorted(found))
+
+
+@cache
+def named_data(file: Path) -> tuple[Path, ...]:
+    """Data files beside or below a module that its text names."""
+    if file.parent == SOURCE / PACKAGE:
+        return ()
+    text = file.read_text(encoding="utf-8")
+    return tuple(
+        sorted(
+            data
+            for data in file.parent.rglob("*.*")
+            if data.suffix in {".json", ".csv", ".html", ".css"} and data.name in text
+        )
+    )
 
 
 def dependencies(file: Path) -> list[Path]:
     """All files of the package that a file needs, itself excluded, sorted.
 
     A module brings its parent packages along, because importing it runs their ``__init__``.
-    A data file that stands beside a module and carries its name (``standing_response.json``
-    beside ``standing_response.py``) belongs to it.
+    A data file of the package (JSON, CSV, HTML, CSS) belongs to every module of its folder, or of
+    a folder above, whose text names it.
     """
     seen: set[Path] = set()
     waiting = [file]
@@ -60,9 +73,5 @@ def dependencies(file: Path) -> list[Path]:
                 if part is not None and part not in seen:
                     seen.add(part)
                     waiting.append(part)
-                    seen.update(
-                        data
-                        for data in part.parent.glob(f"{part.stem}.*")
-                        if data.suffix in {".json", ".css", ".html"}
-                    )
+                    seen.update(named_data(part))
     return sorted(seen - {file})

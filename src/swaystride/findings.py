@@ -64,6 +64,11 @@ def findings_to_json(findings: Iterable[Finding]) -> str:
 def findings_from_json(text: str) -> list[Finding]:
     """Read back what :func:`findings_to_json` wrote.
 
+    Parameters
+    ----------
+    text : str
+        JSON list.
+
     Examples
     --------
     >>> findings_from_json("[]")

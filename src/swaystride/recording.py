@@ -165,6 +165,13 @@ def save_recordings(path: Path | str, recordings: Mapping[str, Recording]) -> No
 def load_recording(path: Path | str, group: str) -> Recording:
     """Read one recording that :func:`save_recordings` wrote, wholly into memory.
 
+    Parameters
+    ----------
+    path : path or str
+        File written by :func:`save_recordings`.
+    group : str
+        Name of the recording.
+
     Raises
     ------
     RecordingError
@@ -180,7 +187,13 @@ def load_recording(path: Path | str, group: str) -> Recording:
 
 
 def list_recordings(path: Path | str) -> list[str]:
-    """Names of the recordings in a file, sorted."""
+    """Names of the recordings in a file, sorted.
+
+    Parameters
+    ----------
+    path : path or str
+        File written by :func:`save_recordings`.
+    """
     import h5netcdf
 
     with h5netcdf.File(path, "r") as file:
@@ -188,6 +201,12 @@ def list_recordings(path: Path | str) -> list[str]:
 
 
 def file_sha256(path: Path | str) -> str:
-    """SHA-256 of a file's bytes, in hexadecimal."""
+    """SHA-256 of a file's bytes, in hexadecimal.
+
+    Parameters
+    ----------
+    path : path or str
+        File of any kind.
+    """
     with Path(path).open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

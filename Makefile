@@ -1,0 +1,80 @@
+# swaystride: `make` sets up the environment and builds every table and figure.
+#
+#   make              everything at published scale     make demo       the same in under a minute
+#   make feedback     one study                         make variants   every variant of every study
+#   make test         tests                             make lint       style, types, workflow
+#   make validation   public real recordings            make recovery   many simulated cohorts
+#   make dry-run      what would be done                make clean      remove results and generated data
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := all
+
+CORES ?= $(shell nproc 2>/dev/null || echo 2)
+COHORT ?=
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+BIN := .venv/bin
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
+	$(if $(COHORT),--config cohort=$(COHORT))
+
+.PHONY: all setup demo feedback variants validation recovery dry-run test lint format lock clean
+
+all: setup
+	@$(SNAKEMAKE) all
+
+demo: setup
+	@snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host --config cohort=synthetic_demo -- all
+
+feedback: setup
+	@$(SNAKEMAKE) feedback
+
+variants: setup
+	@$(SNAKEMAKE) variants
+
+validation: setup
+	@$(SNAKEMAKE) validation
+
+recovery: setup
+	@$(SNAKEMAKE) recovery
+
+dry-run: setup
+	@snakemake --cores $(CORES) --dry-run all
+
+test: setup
+	@python -m pytest
+
+lint: setup
+	@ruff check .
+	@ruff format --check .
+	@mypy
+	@snakefmt --check Snakefile workflow
+	@snakemake --lint
+
+format: setup
+	@ruff check --fix .
+	@ruff format .
+	@snakefmt Snakefile workflow
+
+setup: .venv/.complete
+
+# The marker is written last: an interrupted set-up is started again.
+.venv/.complete: requirements.txt pyproject.toml
+	@command -v git >/dev/null || { echo "missing: git (Debian: apt-get install git)" >&2; exit 1; }
+	@[ -n "$(PYTHON)" ] && "$(PYTHON)" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
+		|| { echo "missing: Python 3.11 (set PYTHON=/path/to/python3.11)" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null \
+		|| { echo "missing: the venv module of Python 3.11 (Debian: apt-get install python3-venv)" >&2; exit 1; }
+	@echo "setting up .venv (once)"
+	@"$(PYTHON)" -m venv --clear .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# Resolve requirements.in anew (needs pip-tools in a Python of your own).
+lock:
+	pip-compile --quiet --upgrade --allow-unsafe --generate-hashes --strip-extras --no-emit-index-url \
+		--no-emit-find-links --no-emit-trusted-host --output-file requirements.txt requirements.in
+
+clean:
+	rm -rf results logs data/raw/synthetic data/raw/synthetic_demo

@@ -1,0 +1,38 @@
+"""Join findings and exclusions of all participants, and count the flow of participants and trials."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from swaystride.command_line import run_script, script_parser
+from swaystride.report.provenance import write_json
+from swaystride.studies.feedback.design import read_design
+from swaystride.studies.feedback.flow import participant_flow
+
+
+def main() -> None:
+    """Parse paths, call the library, write the files."""
+    parser = script_parser(__doc__)
+    parser.add_argument("--raw", type=Path, required=True)
+    parser.add_argument("--parts", type=Path, required=True)
+    parser.add_argument("--participants", nargs="+", required=True)
+    parser.add_argument("--findings", type=Path, required=True)
+    parser.add_argument("--exclusions", type=Path, required=True)
+    parser.add_argument("--flow", type=Path, required=True)
+    arguments = parser.parse_args()
+
+    def joined(kind: str) -> pd.DataFrame:
+        files = [arguments.parts / kind / f"{name}.csv" for name in arguments.participants]
+        tables = [pd.read_csv(file, dtype=str, keep_default_na=False) for file in files]
+        return pd.concat(tables, ignore_index=True)
+
+    findings, exclusions = joined("findings"), joined("exclusions")
+    findings.to_csv(arguments.findings, index=False, lineterminator="\n")
+    exclusions.to_csv(arguments.exclusions, index=False, lineterminator="\n")
+    participants, trials = read_design(arguments.raw)
+    write_json({"flow": participant_flow(participants, trials, exclusions)}, arguments.flow)
+    print(f"{len(findings)} findings, {len(exclusions)} excluded trials")
+
+
+if __name__ == "__main__":
+    run_script(main)

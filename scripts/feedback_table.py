@@ -1,0 +1,70 @@
+"""Write one result table of the feedback study, in all renderings."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from swaystride.command_line import json_file, run_script, script_parser
+from swaystride.configuration import from_mapping
+from swaystride.presentation.table_files import write_table
+from swaystride.studies.feedback.claims import claims_table
+from swaystride.studies.feedback.design import read_design
+from swaystride.studies.feedback.models import collect
+from swaystride.studies.feedback.plan import ModelPlan
+from swaystride.studies.feedback.table_styles import TABLE_STYLES
+from swaystride.studies.feedback.tables import (
+    table_2_1,
+    table_2_2,
+    table_2_3,
+    table_2_3_searched,
+    table_2_4,
+    table_truth,
+)
+
+
+def main() -> None:
+    """Parse paths, call the library, write the files."""
+    parser = script_parser(__doc__)
+    parser.add_argument("--table", choices=list(TABLE_STYLES), required=True)
+    parser.add_argument("--raw", type=Path, required=True)
+    parser.add_argument("--models", type=Path, required=True)
+    parser.add_argument("--printed", type=Path, required=True)
+    parser.add_argument("--parameters", type=json_file, required=True)
+    parser.add_argument("--simulated", action="store_true")
+    parser.add_argument("--output", type=Path, required=True)
+    arguments = parser.parse_args()
+    plan = from_mapping(ModelPlan, arguments.parameters["model"], place="analysis.model")
+
+    def contrasts() -> pd.DataFrame:
+        return collect(arguments.models, "contrasts")
+
+    def printed() -> pd.DataFrame:
+        return pd.read_csv(arguments.printed)
+
+    def truth() -> pd.DataFrame:
+        return pd.read_csv(arguments.raw / "truth" / "effects.csv")
+
+    build = {
+        "table_2_1": lambda: table_2_1(read_design(arguments.raw)[0]),
+        "table_2_2": lambda: table_2_2(
+            collect(arguments.models, "fixed_effects"), plan.significance_level
+        ),
+        "table_2_3": lambda: table_2_3(contrasts(), printed(), plan.last_training_trial),
+        "table_2_3_searched": lambda: table_2_3_searched(contrasts(), printed()),
+        "table_2_4": lambda: table_2_4(contrasts()),
+        "claims": lambda: claims_table(contrasts(), plan.significance_level),
+        "truth": lambda: table_truth(contrasts(), truth()),
+    }
+    style = TABLE_STYLES[arguments.table]
+    write_table(
+        build[arguments.table](),
+        arguments.output.with_suffix(""),
+        caption=style.caption,
+        notes=style.notes,
+        formats=style.formats,
+        simulated=arguments.simulated,
+    )
+
+
+if __name__ == "__main__":
+    run_script(main)

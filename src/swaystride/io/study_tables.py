@@ -1,0 +1,154 @@
+"""Tables that a lab writes beside its recordings: participants.tsv, trials.tsv, ratings.tsv and the like.
+
+Every table is tab-separated text with one header line. Columns are declared with
+:class:`Column`; whatever contradicts the declaration is an error that names file and line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import pandas as pd
+
+from swaystride.errors import DesignError
+
+Kind = Literal["text", "integer", "number"]
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column of a study table must hold.
+
+    Parameters
+    ----------
+    kind : {"text", "integer", "number"}
+        Type of its cells.
+    levels : tuple of str, optional
+        The only values allowed (text columns).
+    minimum, maximum : float, optional
+        Range of a numeric column, ends included.
+    may_be_empty : bool
+        Whether a cell may be empty (it becomes NaN, or an empty text).
+    required : bool
+        Whether the column must be there; an absent optional column is added empty.
+    """
+
+    kind: Kind
+    levels: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    may_be_empty: bool = False
+    required: bool = True
+
+
+def read_study_table(
+    path: Path | str, columns: Mapping[str, Column], *, unique: Sequence[str]
+) -> pd.DataFrame:
+    """Read and check a study table.
+
+    Parameters
+    ----------
+    path : path or str
+        Tab-separated file, UTF-8.
+    columns : mapping of str to Column
+        Declaration; further columns are kept as text.
+    unique : sequence of str
+        Columns that together name a row; no two rows may agree in them.
+
+    Returns
+    -------
+    DataFrame
+        Rows in the order of the file.
+
+    Raises
+    ------
+    DesignError
+        If the file is missing or empty, a column is missing, a cell is of the wrong kind, out of
+        range or not among the levels, or a row stands twice; with file, line and column.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise DesignError("no such file", file=path)
+    try:
+        raw = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False)
+    except pd.errors.EmptyDataError:
+        raise DesignError("file is empty", file=path, expected="a header line") from None
+    except pd.errors.ParserError as error:
+        raise DesignError("rows of unequal length", file=path, found=str(error)) from None
+    if raw.empty:
+        raise DesignError("table has no rows", file=path, expected="at least one")
+    missing = [name for name, column in columns.items() if column.required and name not in raw]
+    if missing:
+        raise DesignError(
+            f"column {missing[0]!r} is missing",
+            file=path,
+            place="line 1",
+            expected="columns " + ", ".join(columns) + ", separated by tabs",
+            found=", ".join(raw.columns),
+        )
+    table = raw.copy()
+    for name, column in columns.items():
+        if name not in raw:
+            table[name] = ""
+        table[name] = _checked_column(table[name], name, column, path)
+    repeated = table.duplicated(list(unique))
+    if repeated.any():
+        row = int(repeated.to_numpy().argmax())
+        key = ", ".join(f"{name} {raw[name].iloc[row]!s}" for name in unique)
+        raise DesignError("row stands twice", file=path, place=_line(row), found=key)
+    return table
+
+
+def write_study_table(table: pd.DataFrame, path: Path | str) -> None:
+    """Write a study table as a lab would keep it: tab-separated, no index, empty for missing.
+
+    Parameters
+    ----------
+    table : DataFrame
+    path : path or str
+    """
+    table.to_csv(path, sep="\t", index=False, lineterminator="\n")
+
+
+def _line(row: int) -> str:
+    """Place of a data row: the header is line 1."""
+    return f"line {row + 2}"
+
+
+def _checked_column(cells: pd.Series, name: str, column: Column, path: Path) -> pd.Series:
+    """One column converted to its kind, or the error of its first bad cell."""
+    empty = cells.str.strip() == ""
+    if column.kind == "text":
+        bad = pd.Series(False, index=cells.index)
+        if column.levels:
+            bad = ~cells.isin(column.levels)
+        expected = "one of " + ", ".join(column.levels) if column.levels else "text"
+        values = cells
+    else:
+        values = pd.to_numeric(cells.where(~empty), errors="coerce").astype("float64")
+        bad = values.isna()
+        expected = "an integer" if column.kind == "integer" else "a number"
+        if column.kind == "integer":
+            bad |= values % 1 != 0
+        if column.minimum is not None:
+            bad |= values < column.minimum
+            expected += f" ≥ {column.minimum:g}"
+        if column.maximum is not None:
+            bad |= values > column.maximum
+            expected += f" ≤ {column.maximum:g}"
+    bad = bad & ~empty if column.may_be_empty else bad | empty
+    if bad.any():
+        row = int(bad.to_numpy().argmax())
+        raise DesignError(
+            "cell is empty" if empty[row] else "cell does not fit its column",
+            file=path,
+            place=f"{_line(row)}, column {name}",
+            expected=expected,
+            found=repr(cells[row]),
+        )
+    if column.kind == "integer" and not empty.any():
+        return values.astype("int64")
+    return values

@@ -1,0 +1,95 @@
+"""Import of standing trials: exclusions by rule, errors by file, gaps that are filled."""
+
+import numpy as np
+import pytest
+
+from swaystride.errors import RecordingError
+from swaystride.recording import make_recording
+from swaystride.sway.standing_trials import (
+    MeasurementMethod,
+    RecordingRules,
+    import_trials,
+    measure_trial,
+    unusable,
+)
+from swaystride.units import GRAVITY_M_S2
+
+RULES = RecordingRules(rate_hz=None, units=None, shortest_duration_s=29.0, longest_gap_s=0.25)
+METHOD = MeasurementMethod(
+    sensor_forward="x",
+    sensor_left="y",
+    sensor_up="z",
+    fusion="vqf",
+    tau_acc_s=3.0,
+    level_sensor=False,
+    remove_mean_rate=True,
+    filter_order=2,
+    cutoff_hz=2.0,
+    filter_direction="zero_lag",
+    pad_s=3.0,
+    longest_gap_s=0.25,
+)
+
+
+def standing(duration_s=30.0, rate_hz=100.0, lost=slice(0, 0)):
+    """A sensor that leans by 1.5° at 0.3 Hz."""
+    time_s = np.arange(round(duration_s * rate_hz)) / rate_hz
+    lean = np.deg2rad(1.5) * np.sin(2 * np.pi * 0.3 * time_s)
+    rate = np.deg2rad(1.5) * 2 * np.pi * 0.3 * np.cos(2 * np.pi * 0.3 * time_s)
+    acc = GRAVITY_M_S2 * np.stack([-np.sin(lean), 0 * lean, np.cos(lean)])
+    gyr = np.stack([0 * lean, rate, 0 * lean])
+    acc[:, lost] = gyr[:, lost] = np.nan
+    return make_recording(
+        rate_hz=rate_hz,
+        rate_source="header",
+        sensors=["lumbar"],
+        acc_m_s2=acc[None],
+        gyr_rad_s=gyr[None],
+    )
+
+
+@pytest.mark.parametrize(
+    ("recording", "reason"),
+    [
+        (standing(), None),
+        (standing(29.01), None),
+        (standing(28.9), "data loss: trial too short"),
+        (standing(lost=slice(1000, 1025)), None),
+        (standing(lost=slice(1000, 1026)), "data loss: gap too long"),
+    ],
+)
+def test_a_trial_is_excluded_by_duration_and_by_its_longest_gap(recording, reason):
+    verdict = unusable(recording, RULES)
+    assert (verdict and verdict["reason"]) == reason
+
+
+def test_a_short_gap_hardly_changes_the_measures():
+    whole, gappy = (
+        measure_trial(standing(), METHOD),
+        measure_trial(standing(lost=slice(900, 910)), METHOD),
+    )
+    assert gappy["samples_filled"] == 10
+    assert whole["samples_filled"] == 0
+    for name in ("ap_rms", "phi_mv", "path_length"):
+        assert gappy[name] == pytest.approx(whole[name], rel=2e-3)
+
+
+def test_a_constant_gyroscope_bias_is_removed():
+    recording = standing()
+    biased = recording.copy(deep=True)
+    biased["gyr"] += np.deg2rad(0.5)
+    clean, with_bias = measure_trial(recording, METHOD), measure_trial(biased, METHOD)
+    assert with_bias["ap_rms"] == pytest.approx(clean["ap_rms"], rel=1e-6)
+
+
+def test_a_missing_file_stops_the_unit_with_its_name(tmp_path):
+    with pytest.raises(RecordingError, match=r"^P01/P01_03.txt: no such file"):
+        import_trials({"trial_03": "P01/P01_03.txt"}, tmp_path, RULES, {})
+
+
+def test_the_labs_own_exclusion_is_kept_and_the_file_not_opened(tmp_path):
+    imported = import_trials(
+        {"trial_03": "P01/absent.txt"}, tmp_path, RULES, {"trial_03": "stepped off the pad"}
+    )
+    assert not imported.recordings
+    assert imported.exclusions["reason"].tolist() == ["stepped off the pad"]

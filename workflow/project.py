@@ -1,0 +1,280 @@
+"""What the rules need to know: cohorts, units, paths, resolved parameters, code dependencies.
+
+Everything here is known when the Snakefile is parsed, so that a dry run shows the true DAG.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from import_graph import REPOSITORY, SOURCE, dependencies, module_file
+from swaystride.configuration import (
+    Tree,
+    iter_parameters,
+    load_yaml,
+    overlay,
+    plain_values,
+    validate,
+)
+from swaystride.errors import ConfigurationError
+
+SCHEMAS = REPOSITORY / "workflow" / "schemas"
+
+#: Stages of a study, in order. A variant names the first one that it changes.
+STAGES = ("metrics", "models")
+
+#: The variant whose results the others share up to their first own stage.
+BASE_VARIANT = "printed"
+
+
+class Project:
+    """The configuration, validated, and the questions that rules ask of it.
+
+    Parameters
+    ----------
+    config : mapping
+        Content of config/config.yaml, command-line overrides included.
+    """
+
+    def __init__(self, config: Mapping[str, Any]) -> None:
+        validate(config, load_yaml(SCHEMAS / "config.schema.yaml"), file="config/config.yaml")
+        self.config = config
+        self.seed: int = config["seed"]
+        self.cohort: str = config["cohort"]
+        self.studies: list[str] = config["studies"]
+        self.cohorts: dict[str, Tree] = config["cohorts"]
+        if self.cohort not in self.cohorts:
+            raise ConfigurationError(
+                "unknown cohort",
+                file="config/config.yaml",
+                place="cohort",
+                expected="one of " + ", ".join(self.cohorts),
+                found=self.cohort,
+            )
+        folder = os.environ.get("SWAYSTRIDE_REAL_DATA") or config["real_data_dir"]
+        self.real_data_dir = Path(folder) if folder else None
+        self.study_files = {name: load_study(name) for name in self.studies}
+
+    # -- cohorts -----------------------------------------------------------------------------
+    base_variant = BASE_VARIANT
+
+    @property
+    def simulated_cohorts(self) -> list[str]:
+        """Names of the simulated cohorts."""
+        return [name for name, cohort in self.cohorts.items() if cohort["simulated"]]
+
+    def is_simulated(self, cohort: str) -> bool:
+        """Whether a cohort is simulated."""
+        return bool(self.cohorts[cohort]["simulated"])
+
+    def raw_folder(self, cohort: str, study: str) -> str:
+        """Folder of the raw files of one study."""
+        folder = self.cohorts[cohort].get("folder", f"data/raw/{cohort}")
+        return f"{folder}/{study}"
+
+    @property
+    def simulated_pattern(self) -> str:
+        """Regular expression of the names of the simulated cohorts."""
+        return "|".join(self.simulated_cohorts) or "(?!)"
+
+    def units(self, study: str, cohort: str) -> list[str]:
+        """Units of work of a study: from the configuration, or from the lab's trials.tsv.
+
+        Raises
+        ------
+        ConfigurationError
+            If a real cohort has no trials.tsv, or one without participants.
+        """
+        if self.is_simulated(cohort):
+            tree = self.parameter_tree(study, cohort, BASE_VARIANT)
+            n_units = plain_values(tree)["simulation"]["cohort"]["protocol"]["n_participants"]
+            return [f"P{number:02d}" for number in range(1, n_units + 1)]
+        return list(dict.fromkeys(row["participant"] for row in self._trials(study, cohort)))
+
+    def existing_files(self, study: str, cohort: str, unit: str) -> list[str]:
+        """Recordings of a unit that are there; what is missing is the import's to report."""
+        folder = Path(self.raw_folder(cohort, study))
+        files = [
+            folder / row["file"]
+            for row in self._trials(study, cohort)
+            if row["participant"] == unit
+        ]
+        return [str(file) for file in files if file.is_file()]
+
+    def _trials(self, study: str, cohort: str) -> list[dict[str, str]]:
+        """Rows of trials.tsv of a real cohort, as text."""
+        path = Path(self.raw_folder(cohort, study)) / "trials.tsv"
+        if not path.is_file():
+            raise ConfigurationError(
+                "the cohort has no trials.tsv",
+                file=path,
+                expected="the table that docs/your-data.md describes",
+            )
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file, delimiter="\t"))
+        if not rows or not {"participant", "file"} <= set(rows[0]):
+            raise ConfigurationError(
+                "trials.tsv cannot be used",
+                file=path,
+                expected="tab-separated columns participant and file, and at least one row",
+            )
+        return rows
+
+    # -- variants and parameters -------------------------------------------------------------
+    def variants(self, study: str) -> list[str]:
+        """Variants of a study, the base variant first."""
+        return list(self.study_files[study]["variants"])
+
+    def source_variant(self, study: str, variant: str, stage: str) -> str:
+        """Variant whose results of a stage are used: its own, or the shared base."""
+        first = self.study_files[study]["variants"][variant]["first_stage"]
+        changed = STAGES.index(stage) >= STAGES.index(first)
+        return variant if changed else BASE_VARIANT
+
+    def parameter_tree(self, study: str, cohort: str, variant: str) -> Tree:
+        """Parameters with units and sources, overlays of scale and variant applied."""
+        scale = self.cohorts[cohort].get("scale", "published")
+        return resolve(study, variant, scale)
+
+    def parameters(self, study: str, cohort: str, variant: str, *sections: str) -> str:
+        """Plain values of the named sections (dotted paths), as JSON for a script."""
+        values = plain_values(self.parameter_tree(study, cohort, variant))
+        chosen: Tree = {}
+        for section in sections:
+            node: Any = values
+            for part in section.split("."):
+                node = node[part]
+            chosen[section.rsplit(".", 1)[-1]] = node
+        return json.dumps(chosen, sort_keys=True)
+
+    # -- pages -------------------------------------------------------------------------------
+    def page_files(self, study: str, cohort: str, variant: str) -> list[str]:
+        """Tables and figures that a study's page shows, from the words of the page."""
+        folder = f"results/{cohort}/{study}/{variant}"
+        files = []
+        for item in load_yaml(REPOSITORY / "workflow" / "report" / f"{study}.yaml")["items"]:
+            if item.get("simulated_only") and not self.is_simulated(cohort):
+                continue
+            if item["kind"] in ("figure", "assumption"):
+                files += [f"{folder}/{item['file']}.svg", f"{folder}/{item['file']}.png"]
+            else:
+                files.append(f"{folder}/{item['file']}")
+        return list(dict.fromkeys(files))
+
+    def scale(self, cohort: str) -> str:
+        """Scale of a cohort; recordings of people have none."""
+        return str(self.cohorts[cohort].get("scale", "as recorded"))
+
+    def parameter_rows(self, study: str, cohort: str, variant: str) -> str:
+        """Parameters in force as JSON rows: group, name, value, unit, source, changed."""
+        tree = self.parameter_tree(study, cohort, variant)
+        if not self.is_simulated(cohort):
+            tree = {"analysis": tree["analysis"]}
+        rows = []
+        for path, leaf in iter_parameters(tree):
+            group, _, name = path.rpartition(".")
+            value = leaf["value"]
+            text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+            changed = leaf.get("changed_by", "")
+            rows.append([group, name, text, leaf["unit"], leaf["source"], changed])
+        return json.dumps(rows, ensure_ascii=False)
+
+    # -- provenance --------------------------------------------------------------------------
+    def config_json(self, cohort: str) -> str:
+        """Configuration of one cohort as canonical JSON, for its hash."""
+        config = {
+            "cohort": {cohort: self.cohorts[cohort]},
+            "seed": self.seed,
+            "studies": {name: self.study_files[name] for name in self.studies},
+        }
+        return json.dumps(config, sort_keys=True)
+
+
+@cache
+def load_study(study: str) -> Tree:
+    """Read and check the parameter file of a study, its variants and scales included."""
+    file = f"config/studies/{study}.yaml"
+    tree = load_yaml(REPOSITORY / file)
+    schema = load_yaml(SCHEMAS / f"{study}.schema.yaml")
+    validate(tree, schema, file=file)
+    for kind in ("variants", "scales"):
+        for name in tree[kind]:
+            changed = _apply(tree, kind, name, file)
+            validate(_without_marks({**tree, **changed}), schema, file=f"{file} ({name})")
+    return tree
+
+
+@cache
+def resolve(study: str, variant: str, scale: str) -> Tree:
+    """Parameter sections of a study under a variant and a scale."""
+    file = f"config/studies/{study}.yaml"
+    tree = load_study(study)
+    scaled = {**tree, **_apply(tree, "scales", scale, file)}
+    return _apply(scaled, "variants", variant, file)
+
+
+def _apply(tree: Tree, kind: str, name: str, file: str) -> Tree:
+    """Sections ``analysis`` and ``simulation`` with one overlay applied."""
+    sections = {section: tree[section] for section in ("analysis", "simulation")}
+    return overlay(sections, tree[kind][name].get("changes", {}), file=file, name=name)
+
+
+def _without_marks(tree: Tree) -> Tree:
+    """Drop what an overlay adds to a parameter beyond its schema."""
+    plain: Tree = json.loads(json.dumps(tree))
+    for _, parameter in iter_parameters({k: plain[k] for k in ("analysis", "simulation")}):
+        parameter.pop("changed_by", None)
+    return plain
+
+
+@cache
+def code(*modules: str) -> list[str]:
+    """Files that a rule depends on: its script or modules, and all that they import.
+
+    Parameters
+    ----------
+    *modules : str
+        Paths of scripts (``scripts/x.py``) or dotted names of library modules.
+    """
+    files: set[Path] = set()
+    for module in modules:
+        file = REPOSITORY / module if module.endswith(".py") else module_file(module)
+        if file is None or not file.is_file():
+            raise FileNotFoundError(f"no such script or module: {module}")
+        files |= {file, *dependencies(file)}
+    return sorted(str(file.relative_to(REPOSITORY)) for file in files)
+
+
+@cache
+def commit() -> str:
+    """Commit of the checkout, with ``+changes`` if tracked files differ; ``unknown`` without git."""
+    git = ["git", "-C", str(REPOSITORY)]
+    try:
+        head = subprocess.run(
+            [*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True
+        ).stdout.strip()
+        changed = subprocess.run(
+            [*git, "status", "--porcelain", "--untracked-files=no"],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return f"{head}+changes" if changed else head
+
+
+def one_thread_each() -> None:
+    """Keep numerical libraries single-threaded: jobs run side by side, one core each."""
+    for name in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA"):
+        os.environ[f"{name}_NUM_THREADS"] = "1"
+    os.environ["MPLBACKEND"] = "Agg"
+    os.environ["PYTHONHASHSEED"] = "0"
+    os.environ["PYTHONPATH"] = str(SOURCE)

@@ -1,0 +1,146 @@
+# Pages and provenance: one page per study and variant; one page and one provenance per cohort.
+
+#: Installed distributions that the results depend on.
+PACKAGES = "snakemake numpy scipy pandas pyarrow xarray h5netcdf vqf numba matplotlib jinja2"
+
+
+def simulated_flag(wildcards):
+    return "--simulated" if project.is_simulated(wildcards.cohort) else ""
+
+
+def cohort_scale(wildcards):
+    return project.scale(wildcards.cohort)
+
+
+def study_page_files(study, cohort, variant):
+    """What the page of a study reads."""
+    folder = f"results/{cohort}/{study}"
+    return [
+        f"workflow/report/{study}.yaml",
+        f"{folder}/quality/findings.csv",
+        f"{folder}/quality/flow.json",
+        f"{folder}/{variant}/parameters.csv",
+        *project.page_files(study, cohort, variant),
+    ]
+
+
+rule parameter_sections:
+    output:
+        "results/{cohort}/{study}/{variant}/parameters/{sections}.json",
+    params:
+        values=lambda wildcards: project.parameters(
+            wildcards.study,
+            wildcards.cohort,
+            wildcards.variant,
+            *wildcards.sections.split("+"),
+        ),
+    log:
+        "logs/{cohort}/{study}/{variant}/parameters_{sections}.log",
+    conda:
+        "../envs/swaystride.yaml"
+    shell:
+        "printf '%s\\n' {params.values:q} 2> {log:q} > {output:q}"
+
+
+rule study_parameters:
+    input:
+        code("scripts/write_parameters.py"),
+    output:
+        "results/{cohort}/{study}/{variant}/parameters.csv",
+    params:
+        rows=lambda wildcards: project.parameter_rows(
+            wildcards.study, wildcards.cohort, wildcards.variant
+        ),
+    log:
+        "logs/{cohort}/{study}/{variant}/parameters.log",
+    conda:
+        "../envs/swaystride.yaml"
+    shell:
+        "{PYTHON:q} scripts/write_parameters.py --rows {params.rows:q} --output {output:q}"
+        " 2>&1 | tee {log:q}"
+
+
+rule study_page:
+    input:
+        code("scripts/study_page.py"),
+        lambda wildcards: study_page_files(
+            wildcards.study, wildcards.cohort, wildcards.variant
+        ),
+    output:
+        "results/{cohort}/{study}/{variant}/report.html",
+    params:
+        scale=cohort_scale,
+        simulated=simulated_flag,
+    log:
+        "logs/{cohort}/{study}/{variant}/page.log",
+    conda:
+        "../envs/swaystride.yaml"
+    shell:
+        "{PYTHON:q} scripts/study_page.py --study {wildcards.study:q} --cohort {wildcards.cohort:q}"
+        " --variant {wildcards.variant:q} --scale {params.scale:q} {params.simulated}"
+        " --output {output:q} 2>&1 | tee {log:q}"
+
+
+rule cohort_page:
+    input:
+        code("scripts/cohort_page.py"),
+        lambda wildcards: [
+            file
+            for study in project.studies
+            for file in study_page_files(
+                study, wildcards.cohort, project.base_variant
+            )
+        ],
+    output:
+        "results/{cohort}/report.html",
+    params:
+        variant=project.base_variant,
+        scale=cohort_scale,
+        simulated=simulated_flag,
+        studies=project.studies,
+    log:
+        "logs/{cohort}/page.log",
+    conda:
+        "../envs/swaystride.yaml"
+    shell:
+        "{PYTHON:q} scripts/cohort_page.py --cohort {wildcards.cohort:q} --variant {params.variant:q}"
+        " --scale {params.scale:q} {params.simulated} --output {output:q} {params.studies:q}"
+        " 2>&1 | tee {log:q}"
+
+
+rule provenance:
+    input:
+        code("scripts/provenance.py"),
+        page="results/{cohort}/report.html",
+        pages=lambda wildcards: [
+            f"results/{wildcards.cohort}/{study}/{project.base_variant}/report.html"
+            for study in project.studies
+        ],
+    output:
+        "results/{cohort}/provenance.json",
+    params:
+        commit=commit(),
+        config=lambda wildcards: project.config_json(wildcards.cohort),
+        seed=project.seed,
+        packages=PACKAGES,
+        inputs=lambda wildcards: [
+            "data/published",
+            "requirements.txt",
+            *(project.raw_folder(wildcards.cohort, study) for study in project.studies),
+        ],
+        outputs=lambda wildcards: [
+            f"results/{wildcards.cohort}/report.html",
+            *(
+                f"results/{wildcards.cohort}/{study}/{part}"
+                for study in project.studies
+                for part in ("recordings", "quality", project.base_variant)
+            ),
+        ],
+    log:
+        "logs/{cohort}/provenance.log",
+    conda:
+        "../envs/swaystride.yaml"
+    shell:
+        "{PYTHON:q} scripts/provenance.py --commit {params.commit:q} --config {params.config:q}"
+        " --seed {params.seed} --packages {params.packages} --inputs {params.inputs:q}"
+        " --outputs {params.outputs:q} --output {output:q} 2>&1 | tee {log:q}"
