@@ -21,22 +21,22 @@ SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet 
 .PHONY: all setup demo feedback variants validation recovery dry-run test lint format lock clean
 
 all: setup
-	@$(SNAKEMAKE) all
+	@$(SNAKEMAKE) -- all
 
 demo: setup
-	@snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host --config cohort=synthetic_demo -- all
+	@$(MAKE) --no-print-directory all COHORT=synthetic_demo
 
 feedback: setup
-	@$(SNAKEMAKE) feedback
+	@$(SNAKEMAKE) -- feedback
 
 variants: setup
-	@$(SNAKEMAKE) variants
+	@$(SNAKEMAKE) -- variants
 
 validation: setup
-	@$(SNAKEMAKE) validation
+	@$(SNAKEMAKE) -- validation
 
 recovery: setup
-	@$(SNAKEMAKE) recovery
+	@$(SNAKEMAKE) -- recovery
 
 dry-run: setup
 	@snakemake --cores $(CORES) --dry-run all
