@@ -10,15 +10,14 @@ sys.path[:0] = [
     str(Path(workflow.basedir) / "workflow"),
 ]
 
-from project import Project, code, commit, one_thread_each
+from project import Project, code, commit, prepare_environment
 
 
 configfile: "config/config.yaml"
 
 
 project = Project(config)
-one_thread_each()
-PYTHON = sys.executable
+prepare_environment()
 
 
 wildcard_constraints:
@@ -41,6 +40,11 @@ rule variants:
             for study in project.studies
             for variant in project.variants(study)
         ],
+
+
+rule recovery:
+    input:
+        [f"results/recovery/{study}.csv" for study in project.studies],
 
 
 include: "workflow/rules/report.smk"

@@ -11,7 +11,7 @@ from swaystride.recording import list_recordings, load_recording
 from swaystride.studies.feedback import figures
 from swaystride.studies.feedback.models import collect
 from swaystride.studies.feedback.plan import ModelPlan
-from swaystride.sway.standing_trials import MeasurementMethod, filtered_sway
+from swaystride.sway.trial_measures import MeasurementMethod, filtered_sway
 
 #: Instant at which the concurrent display of Figure 2.1 is shown: the middle of a 30 s trial.
 DISPLAY_INSTANT_S = 15.0

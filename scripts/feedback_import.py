@@ -6,7 +6,7 @@ from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
 from swaystride.recording import save_recordings
 from swaystride.studies.feedback.design import read_design
-from swaystride.sway.standing_trials import RecordingRules, import_trials
+from swaystride.sway.trial_import import RecordingRules, import_trials
 
 
 def main() -> None:

@@ -7,7 +7,7 @@ import pandas as pd
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
 from swaystride.recording import list_recordings, load_recording
-from swaystride.sway.standing_trials import MeasurementMethod, measure_trial
+from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
 
 
 def main() -> None:

@@ -1,7 +1,9 @@
-"""Recover the true effects of the feedback study over many simulated cohorts of features."""
+"""Recover the true effects of the feedback study over many simulated cohorts."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
+import pandas as pd
 from tqdm import tqdm
 
 from swaystride.command_line import json_file, run_script, script_parser
@@ -29,34 +31,38 @@ def main() -> None:
     parser.add_argument("--printed", type=Path, required=True)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--cohorts", type=int, required=True)
+    parser.add_argument("--raw", type=Path, nargs="*", default=[])
     parser.add_argument("--variant", required=True)
     parser.add_argument("--output", type=Path, required=True)
     arguments = parser.parse_args()
     cohort = cohort_from_config(arguments.parameters["simulation"])
     plan = from_mapping(ModelPlan, arguments.parameters["model"], place="analysis.model")
     participants, trials = design_tables(cohort, arguments.seed)
-    design = design_rows(participants, trials, cohort)
-    named = trials.assign(trial=[f"trial_{number:02d}" for number in trials["session_trial"]])
-    variables = model_variables(participants, named, trial_number_coding=plan.trial_number_coding)
-    truth = true_effects(
-        variables,
-        expected_log_features(design, cohort.population),
-        plan,
-        variance_ratios(cohort.population),
-    )
-    estimates = (
-        cohort_estimates(
-            variables,
-            draw_features(
-                design, cohort.population, generator(arguments.seed, "recovery", str(number))
-            ),
-            plan,
-        )
-        for number in tqdm(range(arguments.cohorts), disable=None)
-    )
+    trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
+    design = design_rows(participants, trials, cohort).sort_values(["participant", "session_trial"])
+    variables = model_variables(participants, trials, trial_number_coding=plan.trial_number_coding)
+    expected = expected_log_features(design, cohort.population)
+    truth = true_effects(variables, expected, plan, variance_ratios(cohort.population))
     marks = attainability(read_table(arguments.printed), plan.last_training_trial)
-    table = recovery_table(estimates, truth, marks, arguments.variant)
+
+    def drawn() -> Iterator[pd.DataFrame]:
+        for number in tqdm(range(arguments.cohorts), disable=None):
+            rng = generator(arguments.seed, "recovery", str(number))
+            features = draw_features(design, cohort.population, rng)
+            yield cohort_estimates(variables, features, plan)
+
+    tables = [recovery_table(drawn(), truth, marks, f"{arguments.variant}, features")]
+    if arguments.raw:
+        raw = (pd.read_parquet(path) for path in arguments.raw)
+        tables.append(recovery_table(raw, truth, marks, f"{arguments.variant}, raw files"))
+    table = pd.concat(tables, ignore_index=True)
     table.to_csv(arguments.output, index=False, float_format="%.6f", lineterminator="\n")
+    shown = table[(table["attainable"] == "yes") & table["variant"].str.endswith("features")]
+    print(
+        f"{len(shown)} attainable effects, {arguments.cohorts} cohorts: largest bias "
+        f"{shown['bias_in_se'].abs().max():.2f} SE, coverage "
+        f"{100 * shown['coverage'].min():.1f} to {100 * shown['coverage'].max():.1f} %"
+    )
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from swaystride.studies.feedback.models import collect
 from swaystride.studies.feedback.plan import ModelPlan
 from swaystride.studies.feedback.table_styles import TABLE_STYLES
 from swaystride.studies.feedback.tables import (
+    coverage_of_print,
     table_2_1,
     table_2_2,
     table_2_3,
@@ -50,6 +51,9 @@ def main() -> None:
             collect(arguments.models, "fixed_effects"), plan.significance_level
         ),
         "table_2_3": lambda: table_2_3(contrasts(), printed(), plan.last_training_trial),
+        "coverage": lambda: coverage_of_print(
+            table_2_3(contrasts(), printed(), plan.last_training_trial), printed()
+        ),
         "table_2_3_searched": lambda: table_2_3_searched(contrasts(), printed()),
         "table_2_4": lambda: table_2_4(contrasts()),
         "claims": lambda: claims_table(contrasts(), plan.significance_level),

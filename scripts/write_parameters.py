@@ -1,11 +1,12 @@
 """Write the parameters in force for one study, cohort and variant, with units and sources."""
 
+import csv
 from pathlib import Path
 
-import pandas as pd
-
 from swaystride.command_line import json_argument, run_script, script_parser
-from swaystride.report.results_on_disk import PARAMETER_COLUMNS
+
+#: The columns that :mod:`swaystride.report.results_on_disk` reads.
+COLUMNS = ("group", "name", "value", "unit", "source", "changed")
 
 
 def main() -> None:
@@ -14,8 +15,9 @@ def main() -> None:
     parser.add_argument("--rows", type=json_argument, required=True)
     parser.add_argument("--output", type=Path, required=True)
     arguments = parser.parse_args()
-    table = pd.DataFrame(arguments.rows, columns=list(PARAMETER_COLUMNS))
-    table.to_csv(arguments.output, index=False, lineterminator="\n")
+    with arguments.output.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerows([COLUMNS, *arguments.rows])
 
 
 if __name__ == "__main__":

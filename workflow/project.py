@@ -9,6 +9,7 @@ import csv
 import json
 import os
 import subprocess
+import sys
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -29,6 +30,9 @@ SCHEMAS = REPOSITORY / "workflow" / "schemas"
 
 #: Stages of a study, in order. A variant names the first one that it changes.
 STAGES = ("metrics", "models")
+
+#: Public real recordings that `make validation` uses.
+VALIDATION_DATASETS = ("standing_force_plate", "lumbar_imu_standing")
 
 #: The variant whose results the others share up to their first own stage.
 BASE_VARIANT = "printed"
@@ -168,6 +172,31 @@ class Project:
                 files.append(f"{folder}/{item['file']}")
         return list(dict.fromkeys(files))
 
+    def study_page_files(self, study: str, cohort: str, variant: str) -> list[str]:
+        """Everything that the page of a study reads."""
+        folder = f"results/{cohort}/{study}"
+        return [
+            f"workflow/report/{study}.yaml",
+            f"{folder}/quality/findings.csv",
+            f"{folder}/quality/flow.json",
+            f"{folder}/{variant}/parameters.csv",
+            *self.page_files(study, cohort, variant),
+        ]
+
+    def simulated_flag(self, wildcards: Any) -> str:
+        """Option of the scripts that mark their output as simulated."""
+        return "--simulated" if self.is_simulated(wildcards.cohort) else ""
+
+    def cohort_scale(self, wildcards: Any) -> str:
+        """Scale of the cohort of a rule."""
+        return self.scale(wildcards.cohort)
+
+    @property
+    def validation_datasets(self) -> list[str]:
+        """Public data sets that are at hand."""
+        folder = self.real_data_dir
+        return [name for name in VALIDATION_DATASETS if folder and (folder / name).is_dir()]
+
     def scale(self, cohort: str) -> str:
         """Scale of a cohort; recordings of people have none."""
         return str(self.cohorts[cohort].get("scale", "as recorded"))
@@ -271,10 +300,15 @@ def commit() -> str:
     return f"{head}+changes" if changed else head
 
 
-def one_thread_each() -> None:
-    """Keep numerical libraries single-threaded: jobs run side by side, one core each."""
+def prepare_environment() -> None:
+    """Set what every job inherits, in this one place.
+
+    Jobs run side by side, one core each, so numerical libraries stay single-threaded; ``python``
+    is the interpreter that runs Snakemake; the library is the one of this checkout.
+    """
     for name in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA"):
         os.environ[f"{name}_NUM_THREADS"] = "1"
     os.environ["MPLBACKEND"] = "Agg"
     os.environ["PYTHONHASHSEED"] = "0"
     os.environ["PYTHONPATH"] = str(SOURCE)
+    os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"

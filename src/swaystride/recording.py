@@ -144,6 +144,21 @@ def with_findings(recording: Recording, findings: Iterable[Finding]) -> Recordin
     return recording.assign_attrs(findings=findings_to_json(joined))
 
 
+def six_axis_signals(recording: Recording) -> NDArray[np.float64]:
+    """Accelerometer (m/s²) and gyroscope (rad/s) of a recording of one sensor.
+
+    Parameters
+    ----------
+    recording : Recording
+        With one sensor.
+
+    Returns
+    -------
+    ndarray, shape (6, n_samples)
+    """
+    return np.concatenate([recording["acc"].to_numpy()[0], recording["gyr"].to_numpy()[0]])
+
+
 def save_recordings(path: Path | str, recordings: Mapping[str, Recording]) -> None:
     """Write recordings as float32 netCDF, one group per name, in the given order.
 

@@ -1,32 +1,18 @@
 # Pages and provenance: one page per study and variant; one page and one provenance per cohort.
 
 #: Installed distributions that the results depend on.
-PACKAGES = "snakemake numpy scipy pandas pyarrow xarray h5netcdf vqf numba matplotlib jinja2"
-
-
-def simulated_flag(wildcards):
-    return "--simulated" if project.is_simulated(wildcards.cohort) else ""
-
-
-def cohort_scale(wildcards):
-    return project.scale(wildcards.cohort)
-
-
-def study_page_files(study, cohort, variant):
-    """What the page of a study reads."""
-    folder = f"results/{cohort}/{study}"
-    return [
-        f"workflow/report/{study}.yaml",
-        f"{folder}/quality/findings.csv",
-        f"{folder}/quality/flow.json",
-        f"{folder}/{variant}/parameters.csv",
-        *project.page_files(study, cohort, variant),
-    ]
+PACKAGES = (
+    "snakemake numpy scipy pandas pyarrow xarray h5netcdf vqf numba matplotlib jinja2"
+)
 
 
 rule parameter_sections:
     output:
         "results/{cohort}/{study}/{variant}/parameters/{sections}.json",
+    log:
+        "logs/{cohort}/{study}/{variant}/parameters_{sections}.log",
+    conda:
+        "../envs/swaystride.yaml"
     params:
         values=lambda wildcards: project.parameters(
             wildcards.study,
@@ -34,10 +20,6 @@ rule parameter_sections:
             wildcards.variant,
             *wildcards.sections.split("+"),
         ),
-    log:
-        "logs/{cohort}/{study}/{variant}/parameters_{sections}.log",
-    conda:
-        "../envs/swaystride.yaml"
     shell:
         "printf '%s\\n' {params.values:q} 2> {log:q} > {output:q}"
 
@@ -47,36 +29,36 @@ rule study_parameters:
         code("scripts/write_parameters.py"),
     output:
         "results/{cohort}/{study}/{variant}/parameters.csv",
-    params:
-        rows=lambda wildcards: project.parameter_rows(
-            wildcards.study, wildcards.cohort, wildcards.variant
-        ),
     log:
         "logs/{cohort}/{study}/{variant}/parameters.log",
     conda:
         "../envs/swaystride.yaml"
+    params:
+        rows=lambda wildcards: project.parameter_rows(
+            wildcards.study, wildcards.cohort, wildcards.variant
+        ),
     shell:
-        "{PYTHON:q} scripts/write_parameters.py --rows {params.rows:q} --output {output:q}"
+        "python scripts/write_parameters.py --rows {params.rows:q} --output {output:q}"
         " 2>&1 | tee {log:q}"
 
 
 rule study_page:
     input:
         code("scripts/study_page.py"),
-        lambda wildcards: study_page_files(
+        lambda wildcards: project.study_page_files(
             wildcards.study, wildcards.cohort, wildcards.variant
         ),
     output:
         "results/{cohort}/{study}/{variant}/report.html",
-    params:
-        scale=cohort_scale,
-        simulated=simulated_flag,
     log:
         "logs/{cohort}/{study}/{variant}/page.log",
     conda:
         "../envs/swaystride.yaml"
+    params:
+        scale=project.cohort_scale,
+        simulated=project.simulated_flag,
     shell:
-        "{PYTHON:q} scripts/study_page.py --study {wildcards.study:q} --cohort {wildcards.cohort:q}"
+        "python scripts/study_page.py --study {wildcards.study:q} --cohort {wildcards.cohort:q}"
         " --variant {wildcards.variant:q} --scale {params.scale:q} {params.simulated}"
         " --output {output:q} 2>&1 | tee {log:q}"
 
@@ -87,23 +69,23 @@ rule cohort_page:
         lambda wildcards: [
             file
             for study in project.studies
-            for file in study_page_files(
+            for file in project.study_page_files(
                 study, wildcards.cohort, project.base_variant
             )
         ],
     output:
         "results/{cohort}/report.html",
-    params:
-        variant=project.base_variant,
-        scale=cohort_scale,
-        simulated=simulated_flag,
-        studies=project.studies,
     log:
         "logs/{cohort}/page.log",
     conda:
         "../envs/swaystride.yaml"
+    params:
+        variant=project.base_variant,
+        scale=project.cohort_scale,
+        simulated=project.simulated_flag,
+        studies=project.studies,
     shell:
-        "{PYTHON:q} scripts/cohort_page.py --cohort {wildcards.cohort:q} --variant {params.variant:q}"
+        "python scripts/cohort_page.py --cohort {wildcards.cohort:q} --variant {params.variant:q}"
         " --scale {params.scale:q} {params.simulated} --output {output:q} {params.studies:q}"
         " 2>&1 | tee {log:q}"
 
@@ -118,6 +100,10 @@ rule provenance:
         ],
     output:
         "results/{cohort}/provenance.json",
+    log:
+        "logs/{cohort}/provenance.log",
+    conda:
+        "../envs/swaystride.yaml"
     params:
         commit=commit(),
         config=lambda wildcards: project.config_json(wildcards.cohort),
@@ -126,7 +112,10 @@ rule provenance:
         inputs=lambda wildcards: [
             "data/published",
             "requirements.txt",
-            *(project.raw_folder(wildcards.cohort, study) for study in project.studies),
+            *(
+                project.raw_folder(wildcards.cohort, study)
+                for study in project.studies
+            ),
         ],
         outputs=lambda wildcards: [
             f"results/{wildcards.cohort}/report.html",
@@ -136,11 +125,7 @@ rule provenance:
                 for part in ("recordings", "quality", project.base_variant)
             ),
         ],
-    log:
-        "logs/{cohort}/provenance.log",
-    conda:
-        "../envs/swaystride.yaml"
     shell:
-        "{PYTHON:q} scripts/provenance.py --commit {params.commit:q} --config {params.config:q}"
+        "python scripts/provenance.py --commit {params.commit:q} --config {params.config:q}"
         " --seed {params.seed} --packages {params.packages} --inputs {params.inputs:q}"
         " --outputs {params.outputs:q} --output {output:q} 2>&1 | tee {log:q}"

@@ -12,9 +12,6 @@ from swaystride.report.assemble import study_content
 from swaystride.report.content import Exclusion, Flow, Parameter, StudyContent
 from swaystride.report.page_text import load_page_text
 
-#: Columns of ``parameters.csv``, the parameters in force for one study, cohort and variant.
-PARAMETER_COLUMNS = ("group", "name", "value", "unit", "source", "changed")
-
 
 @dataclass(frozen=True)
 class PageSource:

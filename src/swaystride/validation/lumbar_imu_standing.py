@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from swaystride.io.reading import read_recording
 from swaystride.recording import Recording
 from swaystride.signals.gaps import missing_runs
-from swaystride.sway.standing_trials import MeasurementMethod, measure_trial
+from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
 from swaystride.validation.manifest import verified_files
 from swaystride.validation.summary import Check, reported
 

@@ -77,6 +77,11 @@ TABLE_STYLES: Final = {
         ("The last trial of a block is without feedback (N = 15).",),
         _EFFECTS,
     ),
+    "coverage": TableStyle(
+        "Printed estimates of Table 2.3 that the 95 % intervals of this cohort cover.",
+        (),
+        {"n": "integer", "covered": "integer"},
+    ),
     "claims": TableStyle(
         "Claims of the chapter's prose, and what this cohort shows.",
         ("Judged on the effects at the printed exponents and terms, α = 0.05.",),

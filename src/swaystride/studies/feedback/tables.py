@@ -128,6 +128,32 @@ def table_2_4(contrasts: pd.DataFrame) -> pd.DataFrame:
     return ours[[*first, "exponent", "se", "df", "n"]].reset_index(drop=True)
 
 
+def coverage_of_print(table: pd.DataFrame, printed: pd.DataFrame) -> pd.DataFrame:
+    """How many printed estimates the intervals of this cohort cover.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table 2.3 of this cohort, with ``attainable``.
+    printed : DataFrame
+        data/published/table_2_3.csv.
+
+    Returns
+    -------
+    DataFrame
+        ``printed_rows`` (jointly attainable or not), ``n`` and ``covered``.
+    """
+    keys = ["panel", "feature", "effect"]
+    both = printed[[*keys, "estimate"]].merge(table, on=keys, suffixes=("_printed", ""))
+    inside = both["estimate_printed"].between(both["ci_low"], both["ci_high"])
+    attainable = both["attainable"].astype(bool)
+    rows = [
+        {"printed_rows": name, "n": int(chosen.sum()), "covered": int((inside & chosen).sum())}
+        for name, chosen in (("jointly attainable", attainable), ("not attainable", ~attainable))
+    ]
+    return pd.DataFrame(rows)
+
+
 def table_truth(contrasts: pd.DataFrame, truth: pd.DataFrame) -> pd.DataFrame:
     """Effects of a simulated cohort beside the truth that it was drawn from.
 

@@ -5,13 +5,8 @@ import pytest
 
 from swaystride.errors import RecordingError
 from swaystride.recording import make_recording
-from swaystride.sway.standing_trials import (
-    MeasurementMethod,
-    RecordingRules,
-    import_trials,
-    measure_trial,
-    unusable,
-)
+from swaystride.sway.trial_import import RecordingRules, import_trials, unusable
+from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
 from swaystride.units import GRAVITY_M_S2
 
 RULES = RecordingRules(rate_hz=None, units=None, shortest_duration_s=29.0, longest_gap_s=0.25)

@@ -1,0 +1,96 @@
+"""The DAG, by dry runs: expected jobs, variants, readable refusals."""
+
+import pytest
+
+FIXED = {
+    "feedback_design": 1,
+    "feedback_quality": 1,
+    "feedback_observations": 1,
+    "feedback_model": 6,
+    "feedback_table": 8,
+    "feedback_figure": 6,
+    "parameter_sections": 6,
+    "study_parameters": 1,
+    "study_page": 1,
+    "cohort_page": 1,
+    "provenance": 1,
+    "all": 1,
+}
+PER_PARTICIPANT = ("feedback_simulate", "feedback_import", "feedback_metrics")
+
+
+@pytest.mark.parametrize(("cohort", "n"), [("synthetic", 19), ("synthetic_demo", 6)])
+def test_all_has_the_expected_jobs(sandbox, cohort, n):
+    planned = sandbox.planned("--config", f"cohort={cohort}", "--", "all")
+    assert planned == FIXED | dict.fromkeys(PER_PARTICIPANT, n)
+    assert sum(planned.values()) < 300
+
+
+def test_one_study_is_built_without_the_page_of_the_cohort(sandbox):
+    planned = sandbox.planned("feedback")
+    assert "cohort_page" not in planned
+    assert planned["study_page"] == 1
+
+
+def test_variants_share_the_stages_before_their_first_own(sandbox):
+    planned = sandbox.planned("variants")
+    assert planned["study_page"] == 3
+    assert planned["feedback_import"] == 19
+    # printed and recommended measure anew; n_coding_reset shares the measures of printed
+    assert planned["feedback_metrics"] == 2 * 19
+    assert planned["feedback_model"] == 3 * 6
+
+
+def test_one_table_can_be_asked_for_alone(sandbox):
+    target = "results/synthetic_demo/feedback/printed/tables/table_2_1.csv"
+    planned = sandbox.planned(target)
+    assert planned["feedback_table"] == 1
+    assert "feedback_figure" not in planned
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "line"),
+    [
+        (
+            "config/config.yaml",
+            "seed: 1",
+            "sead: 1",
+            "config/config.yaml: unknown key 'sead'; expected 'seed'",
+        ),
+        (
+            "config/studies/feedback.yaml",
+            "cutoff_hz:",
+            "cutof_hz:",
+            "analysis.measurement: unknown key 'cutof_hz'; expected 'cutoff_hz'",
+        ),
+        (
+            "config/studies/feedback.yaml",
+            "value: 2.0\n      unit: Hz",
+            "value: -2.0\n      unit: Hz",
+            "cutoff_hz.value: value out of range; expected more than 0; found -2.0",
+        ),
+        (
+            "config/studies/feedback.yaml",
+            "value: 2.0\n      unit: Hz",
+            "value: 2.0\n      unit: kHz",
+            'cutoff_hz.unit: wrong value; expected "Hz"; found "kHz"',
+        ),
+    ],
+)
+def test_a_wrong_configuration_is_refused_in_one_line(sandbox, file, old, new, line):
+    path = sandbox.root / file
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    process = sandbox.snakemake("--dry-run", "all")
+    assert process.returncode != 0
+    assert line in process.stdout
+
+
+def test_a_cohort_without_tables_is_refused_in_one_line(sandbox):
+    path = sandbox.root / "config" / "config.yaml"
+    text = path.read_text(encoding="utf-8").replace("cohort: synthetic\n", "cohort: lab\n")
+    text = text.replace("cohorts:\n", "cohorts:\n  lab: {simulated: false, folder: data/raw/lab}\n")
+    path.write_text(text, encoding="utf-8")
+    output = sandbox.snakemake("--dry-run", "all").stdout
+    assert "data/raw/lab/feedback/trials.tsv: the cohort has no trials.tsv" in output

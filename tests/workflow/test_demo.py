@@ -1,0 +1,129 @@
+"""The demo cohort: truth recovered, same bytes on one and two cores, reruns only what changed."""
+
+import json
+
+import numpy as np
+import pandas as pd
+
+DEMO = ("--config", "cohort=synthetic_demo", "--", "all")
+RESULTS = "results/synthetic_demo"
+
+
+def table(sandbox, name):
+    return pd.read_csv(sandbox.root / RESULTS / "feedback/printed/tables" / f"{name}.csv")
+
+
+def test_tables_agree_with_the_truth_put_in(demo):
+    """42 effects of one small cohort: none further than four standard errors, most covered.
+
+    The effects share their noise, so that one draw may miss many at once; half is far from what
+    wrong signs or a wrong coding would leave.
+    """
+    truth = table(demo, "truth")
+    assert len(truth) == 42
+    assert truth["difference_in_se"].abs().max() < 4.0
+    assert truth["covered"].mean() > 0.5
+
+
+def test_measures_agree_with_the_true_sway_of_every_trial(demo):
+    """Through files, sensor errors, lost packets, fusion and filter: within a few percent."""
+    folder = demo.root / RESULTS / "feedback/printed/metrics"
+    raw = demo.root / "data/raw/synthetic_demo/feedback/truth"
+    errors = []
+    for path in sorted(folder.glob("*.parquet")):
+        ours = pd.read_parquet(path)
+        theirs = pd.read_csv(raw / f"{path.stem}.tsv", sep="\t")
+        theirs["trial"] = [f"trial_{number:02d}" for number in theirs["session_trial"]]
+        both = ours.merge(theirs, on="trial")
+        errors.append(
+            {n: np.log(both[n] / both[f"true_{n}"]) for n in ("ap_rms", "ml_rms", "phi_mv")}
+        )
+    for name in ("ap_rms", "ml_rms", "phi_mv"):
+        error = np.concatenate([row[name] for row in errors])
+        assert error.size > 200
+        assert abs(error.mean()) < 0.02, name
+        assert error.std() < 0.06, name
+
+
+def test_the_exclusion_is_the_trial_whose_link_was_lost(demo):
+    excluded = pd.read_csv(demo.root / RESULTS / "feedback/quality/exclusions.csv")
+    truth = pd.concat(
+        pd.read_csv(path, sep="\t")
+        for path in (demo.root / "data/raw/synthetic_demo/feedback/truth").glob("P*.tsv")
+    )
+    lost = truth[truth["n_lost_packets"] > 30]
+    assert len(excluded) == len(lost) == 1
+    assert excluded["participant"].tolist() == lost["participant"].tolist()
+    assert excluded["trial"].tolist() == [f"trial_{lost['session_trial'].iloc[0]:02d}"]
+
+
+def test_every_output_says_that_it_is_simulated(demo):
+    folder = demo.root / RESULTS
+    assert "Simulated cohort: not measurements." in (folder / "report.html").read_text()
+    for suffix in ("md", "tex", "html"):
+        for path in (folder / "feedback/printed/tables").glob(f"*.{suffix}"):
+            assert "Simulated cohort" in path.read_text(encoding="utf-8"), path.name
+
+
+def test_provenance_lists_every_result_with_its_hash(demo):
+    provenance = json.loads((demo.root / RESULTS / "provenance.json").read_text())
+    listed = {row["path"]: row["sha256"] for row in provenance["outputs"]}
+    on_disk = {f"{RESULTS}/{name}": value for name, value in demo.bytes_of(RESULTS).items()}
+    on_disk.pop(f"{RESULTS}/provenance.json")
+    assert listed == on_disk
+    assert any(row["path"].endswith("P01_01.txt") for row in provenance["inputs"])
+    assert provenance["seed"] == 1
+
+
+def test_a_rerun_does_nothing(demo):
+    assert demo.planned(*DEMO) == {}
+
+
+def test_one_core_gives_the_same_bytes(demo, sandbox):
+    process = sandbox.snakemake("--quiet", "rules", *DEMO, cores=1)
+    assert process.returncode == 0, process.stdout
+    for folder in ("results", "data/raw"):
+        assert sandbox.bytes_of(folder) == demo.bytes_of(folder)
+
+
+def edited(sandbox, file):
+    """Plan after one more comment in a file; the file is restored."""
+    path = sandbox.root / file
+    text = path.read_text(encoding="utf-8")
+    try:
+        path.write_text(text + "\n# an edit\n", encoding="utf-8")
+        return sandbox.planned(*DEMO)
+    finally:
+        path.write_text(text, encoding="utf-8")
+
+
+def test_an_edit_reruns_the_dependents_only(demo):
+    """The first stage that reruns is the first that imports the module."""
+    claims = edited(demo, "src/swaystride/studies/feedback/claims.py")
+    assert claims["feedback_table"] == 8
+    assert not {"feedback_simulate", "feedback_import", "feedback_metrics"} & set(claims)
+    assert "feedback_model" not in claims
+
+    fusion = edited(demo, "src/swaystride/signals/orientation.py")
+    assert fusion["feedback_metrics"] == 6
+    assert not {"feedback_simulate", "feedback_import"} & set(fusion)
+
+    readers = edited(demo, "src/swaystride/io/reading.py")
+    assert readers["feedback_import"] == 6
+    assert "feedback_simulate" not in readers
+
+    assert edited(demo, "src/swaystride/validation/figures.py") == {}
+
+
+def test_a_changed_parameter_reruns_the_stages_that_use_it(demo):
+    path = demo.root / "config/studies/feedback.yaml"
+    text = path.read_text(encoding="utf-8")
+    old = 'value: 3.0\n      unit: s\n      source: "spec §8.1; default of VQF"'
+    assert old in text
+    try:
+        path.write_text(text.replace(old, old.replace("3.0", "4.0")), encoding="utf-8")
+        planned = demo.planned(*DEMO)
+    finally:
+        path.write_text(text, encoding="utf-8")
+    assert planned["feedback_metrics"] == 6
+    assert not {"feedback_simulate", "feedback_import"} & set(planned)
