@@ -34,6 +34,8 @@ variants: setup
 
 validation: setup
 	@$(SNAKEMAKE) -- validation
+	@! grep ',no$$' results/validation/summary.csv \
+		|| { echo "validation: the values above are not within tolerance" >&2; exit 1; }
 
 recovery: setup
 	@$(SNAKEMAKE) -- recovery

@@ -1,16 +1,14 @@
-"""Write participants.tsv, trials.tsv and the true effects of the simulated feedback cohort."""
+"""Write participants.tsv, trials.tsv and the expected features of the simulated feedback cohort."""
 
 from pathlib import Path
 
+import pandas as pd
+
 from swaystride.command_line import json_file, run_script, script_parser
-from swaystride.configuration import from_mapping
 from swaystride.io.study_tables import write_study_table
 from swaystride.simulate.feedback_cohort import design_rows, design_tables
 from swaystride.simulate.feedback_parameters import cohort_from_config
 from swaystride.simulate.feedback_population import expected_log_features, variance_ratios
-from swaystride.studies.feedback.design import model_variables, read_design
-from swaystride.studies.feedback.plan import ModelPlan
-from swaystride.studies.feedback.truth import true_effects
 
 
 def main() -> None:
@@ -19,17 +17,22 @@ def main() -> None:
     parser.add_argument("--parameters", type=json_file, required=True)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--folder", type=Path, required=True)
-    parser.add_argument("--truth", type=Path, required=True)
+    parser.add_argument("--expected", type=Path, required=True)
+    parser.add_argument("--variance-ratios", type=Path, required=True)
     arguments = parser.parse_args()
     cohort = cohort_from_config(arguments.parameters["simulation"])
-    plan = from_mapping(ModelPlan, arguments.parameters["model"], place="analysis.model")
     participants, trials = design_tables(cohort, arguments.seed)
     write_study_table(participants, arguments.folder / "participants.tsv")
     write_study_table(trials, arguments.folder / "trials.tsv")
     expected = expected_log_features(design_rows(participants, trials, cohort), cohort.population)
-    variables = model_variables(*read_design(arguments.folder), trial_number_coding="continue")
-    truth = true_effects(variables, expected, plan, variance_ratios(cohort.population))
-    truth.to_csv(arguments.truth, index=False, float_format="%.9g", lineterminator="\n")
+    named = pd.concat([trials[["participant", "session_trial"]], expected], axis=1)
+    named.to_csv(
+        arguments.expected, sep="\t", index=False, float_format="%.9g", lineterminator="\n"
+    )
+    ratios = pd.Series(variance_ratios(cohort.population), name="variance_ratio")
+    ratios.rename_axis("feature").to_csv(
+        arguments.variance_ratios, sep="\t", float_format="%.9g", lineterminator="\n"
+    )
 
 
 if __name__ == "__main__":

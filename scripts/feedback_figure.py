@@ -2,19 +2,17 @@
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
 from swaystride.presentation.figure_style import figure_style, save_figure
-from swaystride.recording import list_recordings, load_recording
+from swaystride.recording import load_recording
 from swaystride.studies.feedback import figures
-from swaystride.studies.feedback.models import collect
+from swaystride.studies.feedback.model_results import collect
 from swaystride.studies.feedback.plan import ModelPlan
 from swaystride.sway.trial_measures import MeasurementMethod, filtered_sway
-
-#: Instant at which the concurrent display of Figure 2.1 is shown: the middle of a 30 s trial.
-DISPLAY_INSTANT_S = 15.0
 
 
 def main() -> None:
@@ -31,17 +29,21 @@ def main() -> None:
     arguments = parser.parse_args()
     plan = from_mapping(ModelPlan, arguments.parameters["model"], place="analysis.model")
     observed = pd.read_parquet(arguments.models / "observations.parquet")
-    exemplar = arguments.recordings.stem
+    exemplar = observed["participant"].iloc[0]
     own = observed[observed["participant"] == exemplar]
 
     def displays() -> figures.Figure:
         method = from_mapping(
             MeasurementMethod, arguments.parameters["measurement"], place="analysis.measurement"
         )
-        recording = load_recording(arguments.recordings, list_recordings(arguments.recordings)[0])
-        ap_deg, ml_deg = filtered_sway(recording, method)
+        file = arguments.recordings / f"{exemplar}.nc"
+        concurrent, terminal = (
+            np.stack(filtered_sway(load_recording(file, trial), method))
+            for trial in figures.display_trials(own)
+        )
+        # the middle of the trial
         return figures.figure_feedback_displays(
-            ap_deg, ml_deg, recording.attrs["rate_hz"], instant_s=DISPLAY_INSTANT_S
+            concurrent, terminal, instant=concurrent.shape[1] // 2
         )
 
     def predicted() -> figures.Figure:

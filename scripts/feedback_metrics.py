@@ -7,7 +7,7 @@ import pandas as pd
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
 from swaystride.recording import list_recordings, load_recording
-from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
+from swaystride.sway.trial_measures import TRIAL_MEASURES, MeasurementMethod, measure_trial
 
 
 def main() -> None:
@@ -29,7 +29,8 @@ def main() -> None:
         }
         for trial in list_recordings(arguments.recordings)
     ]
-    pd.DataFrame(rows).to_parquet(arguments.output, index=False)
+    columns = ["participant", "trial", *TRIAL_MEASURES]
+    pd.DataFrame(rows, columns=columns).to_parquet(arguments.output, index=False)
     print(f"{arguments.participant}: {len(rows)} trials measured")
 
 

@@ -23,6 +23,10 @@ from swaystride.studies.feedback.plan import ModelPlan
 from swaystride.studies.feedback.recovery import cohort_estimates, recovery_table
 from swaystride.studies.feedback.truth import true_effects
 
+#: What the recovery of an attainable effect must reach over 200 cohorts.
+LARGEST_BIAS_IN_SE = 0.25
+COVERAGE = (0.91, 0.98)
+
 
 def main() -> None:
     """Parse paths, call the library, write the file."""
@@ -58,10 +62,12 @@ def main() -> None:
     table = pd.concat(tables, ignore_index=True)
     table.to_csv(arguments.output, index=False, float_format="%.6f", lineterminator="\n")
     shown = table[(table["attainable"] == "yes") & table["variant"].str.endswith("features")]
+    passed = shown["bias_in_se"].abs().lt(LARGEST_BIAS_IN_SE) & shown["coverage"].between(*COVERAGE)
     print(
         f"{len(shown)} attainable effects, {arguments.cohorts} cohorts: largest bias "
         f"{shown['bias_in_se'].abs().max():.2f} SE, coverage "
-        f"{100 * shown['coverage'].min():.1f} to {100 * shown['coverage'].max():.1f} %"
+        f"{100 * shown['coverage'].min():.1f} to {100 * shown['coverage'].max():.1f} %; "
+        f"{passed.sum()} of {len(shown)} within limits"
     )
 
 

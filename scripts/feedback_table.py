@@ -9,7 +9,7 @@ from swaystride.configuration import from_mapping
 from swaystride.presentation.table_files import write_table
 from swaystride.studies.feedback.claims import claims_table
 from swaystride.studies.feedback.design import read_design
-from swaystride.studies.feedback.models import collect
+from swaystride.studies.feedback.model_results import collect
 from swaystride.studies.feedback.plan import ModelPlan
 from swaystride.studies.feedback.table_styles import TABLE_STYLES
 from swaystride.studies.feedback.tables import (
@@ -19,17 +19,17 @@ from swaystride.studies.feedback.tables import (
     table_2_3,
     table_2_3_searched,
     table_2_4,
-    table_truth,
 )
 
 
 def main() -> None:
     """Parse paths, call the library, write the files."""
     parser = script_parser(__doc__)
-    parser.add_argument("--table", choices=list(TABLE_STYLES), required=True)
+    parser.add_argument("--table", choices=sorted(set(TABLE_STYLES) - {"truth"}), required=True)
     parser.add_argument("--raw", type=Path, required=True)
     parser.add_argument("--models", type=Path, required=True)
     parser.add_argument("--printed", type=Path, required=True)
+    parser.add_argument("--text", type=Path, required=True)
     parser.add_argument("--parameters", type=json_file, required=True)
     parser.add_argument("--simulated", action="store_true")
     parser.add_argument("--output", type=Path, required=True)
@@ -42,9 +42,6 @@ def main() -> None:
     def printed() -> pd.DataFrame:
         return pd.read_csv(arguments.printed)
 
-    def truth() -> pd.DataFrame:
-        return pd.read_csv(arguments.raw / "truth" / "effects.csv")
-
     build = {
         "table_2_1": lambda: table_2_1(read_design(arguments.raw)[0]),
         "table_2_2": lambda: table_2_2(
@@ -55,9 +52,8 @@ def main() -> None:
             table_2_3(contrasts(), printed(), plan.last_training_trial), printed()
         ),
         "table_2_3_searched": lambda: table_2_3_searched(contrasts(), printed()),
-        "table_2_4": lambda: table_2_4(contrasts()),
+        "table_2_4": lambda: table_2_4(contrasts(), printed(), pd.read_csv(arguments.text)),
         "claims": lambda: claims_table(contrasts(), plan.significance_level),
-        "truth": lambda: table_truth(contrasts(), truth()),
     }
     style = TABLE_STYLES[arguments.table]
     write_table(

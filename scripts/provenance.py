@@ -21,7 +21,7 @@ def main() -> None:
     def files(roots: list[Path]) -> list[Path]:
         found = [path for root in roots for path in ([root] if root.is_file() else root.rglob("*"))]
         hidden = {path for path in found if path.name.startswith(".")}
-        return sorted({path for path in found if path.is_file()} - hidden - {arguments.output})
+        return sorted({path for path in found if path.is_file()} - hidden)
 
     provenance = collect_provenance(
         commit=arguments.commit,

@@ -84,12 +84,13 @@ class FeedbackRules:
         ]
 
     def truth(self, wildcards: Any) -> list[str]:
-        """True effects, of simulated cohorts only."""
+        """Expected features and their weights, of simulated cohorts only."""
         if not self.project.is_simulated(wildcards.cohort):
             return []
-        return [f"{self.raw(wildcards)}/truth/effects.csv"]
+        folder = f"{self.raw(wildcards)}/truth"
+        return [f"{folder}/expected.tsv", f"{folder}/variance_ratios.tsv"]
 
-    def exemplar(self, wildcards: Any) -> str:
-        """Recordings of the participant whom the figures show: the first of the cohort."""
-        first = self.participants(wildcards)[0]
-        return f"results/{wildcards.cohort}/feedback/recordings/{first}.nc"
+    def all_recordings(self, wildcards: Any) -> list[str]:
+        """Recordings of every participant; the first with usable trials is the exemplar."""
+        folder = f"results/{wildcards.cohort}/feedback/recordings"
+        return [f"{folder}/{participant}.nc" for participant in self.participants(wildcards)]

@@ -31,6 +31,9 @@ SCHEMAS = REPOSITORY / "workflow" / "schemas"
 #: Stages of a study, in order. A variant names the first one that it changes.
 STAGES = ("metrics", "models")
 
+#: Section of the parameters -> the first stage that uses it. Others belong to all variants.
+STAGE_OF_SECTION = {"analysis.measurement": "metrics", "analysis.model": "models"}
+
 #: Public real recordings that `make validation` uses.
 VALIDATION_DATASETS = ("standing_force_plate", "lumbar_imu_standing")
 
@@ -121,8 +124,14 @@ class Project:
                 file=path,
                 expected="the table that docs/your-data.md describes",
             )
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file, delimiter="\t"))
+        try:
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                rows = [
+                    {key: value or "" for key, value in row.items() if key}
+                    for row in csv.DictReader(file, delimiter="\t")
+                ]
+        except UnicodeDecodeError:
+            raise ConfigurationError("not readable as text", file=path, expected="UTF-8") from None
         if not rows or not {"participant", "file"} <= set(rows[0]):
             raise ConfigurationError(
                 "trials.tsv cannot be used",
@@ -149,7 +158,12 @@ class Project:
 
     def parameters(self, study: str, cohort: str, variant: str, *sections: str) -> str:
         """Plain values of the named sections (dotted paths), as JSON for a script."""
-        values = plain_values(self.parameter_tree(study, cohort, variant))
+        return self._sections(self.parameter_tree(study, cohort, variant), sections)
+
+    @staticmethod
+    def _sections(tree: Tree, sections: tuple[str, ...]) -> str:
+        """Plain values of some sections, each under the last part of its path."""
+        values = plain_values(tree)
         chosen: Tree = {}
         for section in sections:
             node: Any = values
@@ -157,6 +171,10 @@ class Project:
                 node = node[part]
             chosen[section.rsplit(".", 1)[-1]] = node
         return json.dumps(chosen, sort_keys=True)
+
+    def recovery_parameters(self, study: str, *sections: str) -> str:
+        """Parameters of the published scale, as JSON: recovery belongs to no cohort."""
+        return self._sections(resolve(study, BASE_VARIANT, "published"), sections)
 
     # -- pages -------------------------------------------------------------------------------
     def page_files(self, study: str, cohort: str, variant: str) -> list[str]:
@@ -170,6 +188,8 @@ class Project:
                 files += [f"{folder}/{item['file']}.svg", f"{folder}/{item['file']}.png"]
             else:
                 files.append(f"{folder}/{item['file']}")
+            if "printed" in item:
+                files.append(f"data/published/{item['printed']}")
         return list(dict.fromkeys(files))
 
     def study_page_files(self, study: str, cohort: str, variant: str) -> list[str]:
@@ -182,6 +202,25 @@ class Project:
             f"{folder}/{variant}/parameters.csv",
             *self.page_files(study, cohort, variant),
         ]
+
+    def result_files(self, cohort: str) -> list[str]:
+        """Results of a cohort that its provenance lists: the base variant of every study."""
+        files = [f"results/{cohort}/report.html"]
+        for study in self.studies:
+            folder = f"results/{cohort}/{study}"
+            variant = f"{folder}/{BASE_VARIANT}"
+            shown = self.study_page_files(study, cohort, BASE_VARIANT)
+            for file in [name for name in shown if name.startswith(folder)]:
+                stem, _, suffix = file.rpartition(".")
+                is_table = suffix == "csv" and f"{variant}/tables/" in file
+                files += (
+                    [f"{stem}.{s}" for s in ("csv", "md", "tex", "html")] if is_table else [file]
+                )
+                if suffix == "svg":
+                    files.append(f"{stem}.pdf")
+            files += [f"{folder}/quality/exclusions.csv", f"{variant}/report.html"]
+            files += [f"{folder}/recordings/{unit}.nc" for unit in self.units(study, cohort)]
+        return files
 
     def simulated_flag(self, wildcards: Any) -> str:
         """Option of the scripts that mark their output as simulated."""
@@ -233,6 +272,19 @@ def load_study(study: str) -> Tree:
     tree = load_yaml(REPOSITORY / file)
     schema = load_yaml(SCHEMAS / f"{study}.schema.yaml")
     validate(tree, schema, file=file)
+    for name, variant in tree["variants"].items():
+        for path in variant["changes"]:
+            stage = STAGE_OF_SECTION.get(path.rpartition(".")[0])
+            if stage is None or STAGES.index(stage) < STAGES.index(variant["first_stage"]):
+                raise ConfigurationError(
+                    f"{path!r} is used before the variant begins",
+                    file=file,
+                    place=f"variants.{name}",
+                    expected=f"first_stage {stage}"
+                    if stage
+                    else "a parameter of " + " or ".join(STAGE_OF_SECTION),
+                    found=f"first_stage {variant['first_stage']}",
+                )
     for kind in ("variants", "scales"):
         for name in tree[kind]:
             changed = _apply(tree, kind, name, file)

@@ -169,8 +169,12 @@ def save_recordings(path: Path | str, recordings: Mapping[str, Recording]) -> No
     recordings : mapping of str to Recording
         Group name (the trial) to recording.
     """
+    import h5netcdf
+
     path = Path(path)
-    path.unlink(missing_ok=True)
+    # an empty file too: all trials of a unit may be excluded
+    with h5netcdf.File(path, "w"):
+        pass
     for group, recording in recordings.items():
         encoding = {str(name): {"dtype": "float32"} for name in recording.data_vars}
         encoding["time"] = {"dtype": "float64"}

@@ -102,7 +102,9 @@ def test_renderings_hold_the_same_cells(tmp_path_factory, frame):
     cells = rows_of_html(text[".html"])
     assert rows_of_markdown(text[".md"]) == cells
     assert rows_of_tex(text[".tex"]) == cells
-    plain = list(csv.reader(io.StringIO(text[".csv"])))
+    marked = list(csv.reader(io.StringIO(text[".csv"])))
+    assert [row[-1] for row in marked] == ["data"] + ["simulated"] * len(frame)
+    plain = [row[:-1] for row in marked]
     without_p = [[cell.replace(MINUS, "-") for cell in row[:-1]] for row in cells]
     assert [row[:-1] for row in plain] == without_p
     for shown, (_, exact) in zip(cells[1:], enumerate(plain[1:]), strict=True):
@@ -121,7 +123,7 @@ def test_csv_reads_back_within_half_a_unit(tmp_path_factory, values, decimals):
 def test_csv_is_plain_and_joins_with_the_printed_table(tmp_path):
     printed = read_table(PUBLISHED / "table_2_3.csv")
     formats = {"exponent": 1, "estimate": 3, "ci_low": 3, "ci_high": 3, "p": "number:3"}
-    files = write_table(printed, tmp_path / "t", caption="c", formats=formats, simulated=True)
+    files = write_table(printed, tmp_path / "t", caption="c", formats=formats, simulated=False)
     raw = files[0].read_bytes()
     assert raw.splitlines()[0].decode() == ",".join(printed.columns)
     assert b"\r" not in raw

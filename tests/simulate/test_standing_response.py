@@ -240,3 +240,15 @@ def test_the_script_writes_a_surface_that_the_library_reads(tmp_path):
     difference = rough.expected(points) - standing_response().expected(points)
     # 1024 trials and a parabola against 65 536 and a quartic.
     assert np.sqrt((difference**2).mean(axis=0)).max() < 0.06
+
+
+def test_the_stored_surface_is_the_one_that_the_configuration_describes():
+    """Ranges, size, degree and seed of the fit stand in config/studies/feedback.yaml."""
+    tree = load_yaml(REPOSITORY / "config" / "studies" / "feedback.yaml")["simulation"]["response"]
+    wanted = {name: leaf["value"] for name, leaf in tree.items()}
+    record = json.loads(
+        (REPOSITORY / "src/swaystride/simulate/standing_response.json").read_text(encoding="utf-8")
+    )
+    assert {name: wanted[name] for name in record["ranges"]} == record["ranges"]
+    for name in ("n_runs", "trials_per_run", "degree", "seed"):
+        assert record["fit"][name] == wanted[name], name

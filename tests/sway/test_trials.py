@@ -9,7 +9,13 @@ from swaystride.sway.trial_import import RecordingRules, import_trials, unusable
 from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
 from swaystride.units import GRAVITY_M_S2
 
-RULES = RecordingRules(rate_hz=None, units=None, shortest_duration_s=29.0, longest_gap_s=0.25)
+RULES = RecordingRules(
+    rate_hz=None,
+    units=None,
+    shortest_duration_s=29.0,
+    longest_duration_s=31.0,
+    longest_gap_s=0.25,
+)
 METHOD = MeasurementMethod(
     sensor_forward="x",
     sensor_left="y",
@@ -22,7 +28,6 @@ METHOD = MeasurementMethod(
     cutoff_hz=2.0,
     filter_direction="zero_lag",
     pad_s=3.0,
-    longest_gap_s=0.25,
 )
 
 
@@ -49,6 +54,7 @@ def standing(duration_s=30.0, rate_hz=100.0, lost=slice(0, 0)):
         (standing(), None),
         (standing(29.01), None),
         (standing(28.9), "data loss: trial too short"),
+        (standing(31.2), "trial too long"),
         (standing(lost=slice(1000, 1025)), None),
         (standing(lost=slice(1000, 1026)), "data loss: gap too long"),
     ],
@@ -75,6 +81,43 @@ def test_a_constant_gyroscope_bias_is_removed():
     biased["gyr"] += np.deg2rad(0.5)
     clean, with_bias = measure_trial(recording, METHOD), measure_trial(biased, METHOD)
     assert with_bias["ap_rms"] == pytest.approx(clean["ap_rms"], rel=1e-6)
+
+
+def spoilt(change):
+    """A standing trial with one thing wrong."""
+    recording = standing().assign_attrs(source_file="P01_01.txt")
+    change(recording)
+    return recording
+
+
+def turned(recording):
+    recording["acc"][0, [0, 2]] = recording["acc"].to_numpy()[0, [2, 0]]
+
+
+def upside_down(recording):
+    recording["acc"][0, 2] = -recording["acc"][0, 2]
+
+
+def in_degrees(recording):
+    recording["gyr"][:] = np.rad2deg(recording["gyr"].to_numpy()) * 2
+
+
+def dead(recording):
+    recording["gyr"][:] = 0.01
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        (turned, "P01_01.txt: the sensor is not worn as configured; .* along the forward axis"),
+        (upside_down, "found it 180° away .* along the negative up axis"),
+        (in_degrees, "too large for standing; .* are these degrees per second"),
+        (dead, "the gyroscope never changes"),
+    ],
+)
+def test_a_sensor_that_cannot_be_right_is_refused(change, line):
+    with pytest.raises(RecordingError, match=line):
+        measure_trial(spoilt(change), METHOD)
 
 
 def test_a_missing_file_stops_the_unit_with_its_name(tmp_path):

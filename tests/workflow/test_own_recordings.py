@@ -28,7 +28,7 @@ def test_bad_recordings_are_named_and_the_others_finish(lab):
     missing = folder / "P03/P03_01.txt"
     wrong_unit = folder / "P04/P04_02.txt"
     text = truncated.read_text(encoding="utf-8")
-    truncated.write_text(text[: len(text) // 2 - 7], encoding="utf-8")
+    truncated.write_text(text[: text.index("\n", len(text) // 2) + 20], encoding="utf-8")
     missing.unlink()
     rows = wrong_unit.read_text(encoding="utf-8").splitlines()
     start = next(i for i, row in enumerate(rows) if row.startswith("PacketCounter")) + 1
@@ -64,3 +64,16 @@ def test_after_excluding_them_the_cohort_is_complete_and_called_real(lab):
     page = (lab.root / PAGE).read_text(encoding="utf-8")
     assert "Simulated cohort" not in page
     assert "recording damaged" in page
+
+
+def test_a_participant_without_usable_trials_is_left_out_and_counted(lab):
+    path = lab.root / "data/raw/my_lab/feedback/trials.tsv"
+    trials = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False)
+    trials.loc[trials["participant"] == "P01", "exclude"] = "fell ill"
+    trials.to_csv(path, sep="\t", index=False)
+    process = lab.snakemake("--quiet", "rules", "--keep-going", "--", "all")
+    assert process.returncode == 0, process.stdout
+    table = pd.read_csv(lab.root / "results/my_lab/feedback/printed/tables/table_2_3.csv")
+    assert (table["n"] < 223 - 35).all()
+    flow = (lab.root / "results/my_lab/feedback/quality/flow.json").read_text(encoding="utf-8")
+    assert "no usable trial" in flow

@@ -14,11 +14,12 @@ feedback = FeedbackRules(project)
 rule feedback_design:
     input:
         code("scripts/feedback_design.py"),
-        parameters=feedback.parameters("simulation", "analysis.model"),
+        parameters=feedback.parameters("simulation"),
     output:
         participants="data/raw/{cohort}/feedback/participants.tsv",
         trials="data/raw/{cohort}/feedback/trials.tsv",
-        truth="data/raw/{cohort}/feedback/truth/effects.csv",
+        expected="data/raw/{cohort}/feedback/truth/expected.tsv",
+        variance_ratios="data/raw/{cohort}/feedback/truth/variance_ratios.tsv",
     log:
         "logs/{cohort}/feedback/design.log",
     wildcard_constraints:
@@ -30,7 +31,8 @@ rule feedback_design:
         seed=project.seed,
     shell:
         "python scripts/feedback_design.py --parameters {input.parameters:q} --seed {params.seed}"
-        " --folder {params.raw:q} --truth {output.truth:q} 2>&1 | tee {log:q}"
+        " --folder {params.raw:q} --expected {output.expected:q}"
+        " --variance-ratios {output.variance_ratios:q} 2>&1 | tee {log:q}"
 
 
 rule feedback_simulate:
@@ -169,7 +171,7 @@ rule feedback_table:
         tables=feedback.design_tables,
         observations="results/{cohort}/feedback/{variant}/models/observations.parquet",
         printed="data/published/table_2_3.csv",
-        truth=feedback.truth,
+        text="data/published/table_2_4.csv",
         parameters=feedback.parameters("analysis.model"),
     output:
         multiext(
@@ -181,6 +183,8 @@ rule feedback_table:
         ),
     log:
         "logs/{cohort}/feedback/{variant}/{table}.log",
+    wildcard_constraints:
+        table="(?!truth)[a-z0-9_]+",
     conda:
         "../envs/swaystride.yaml"
     params:
@@ -190,7 +194,35 @@ rule feedback_table:
     shell:
         "python scripts/feedback_table.py --table {wildcards.table:q} --raw {params.raw:q}"
         " --models {params.models:q} --parameters {input.parameters:q} {params.simulated}"
-        " --printed {input.printed:q} --output {output.csv:q} 2>&1 | tee {log:q}"
+        " --printed {input.printed:q} --text {input.text:q} --output {output.csv:q} 2>&1 | tee {log:q}"
+
+
+rule feedback_truth:
+    input:
+        code("scripts/feedback_truth.py"),
+        feedback.models,
+        tables=feedback.design_tables,
+        observations="results/{cohort}/feedback/{variant}/models/observations.parquet",
+        truth=feedback.truth,
+        parameters=feedback.parameters("analysis.model"),
+    output:
+        multiext(
+            "results/{cohort}/feedback/{variant}/tables/truth",
+            csv=".csv",
+            md=".md",
+            tex=".tex",
+            html=".html",
+        ),
+    log:
+        "logs/{cohort}/feedback/{variant}/truth.log",
+    conda:
+        "../envs/swaystride.yaml"
+    params:
+        raw=feedback.raw,
+        models=lambda wildcards, input: Path(input.observations).parent,
+    shell:
+        "python scripts/feedback_truth.py --raw {params.raw:q} --models {params.models:q}"
+        " --parameters {input.parameters:q} --output {output.csv:q} 2>&1 | tee {log:q}"
 
 
 rule feedback_figure:
@@ -199,7 +231,7 @@ rule feedback_figure:
         feedback.models,
         tables=feedback.design_tables,
         observations="results/{cohort}/feedback/{variant}/models/observations.parquet",
-        recordings=feedback.exemplar,
+        recordings=feedback.all_recordings,
         effects="results/{cohort}/feedback/{variant}/tables/table_2_3.csv",
         printed="data/published/table_2_3.csv",
         parameters=feedback.parameters("analysis.measurement", "analysis.model"),
@@ -216,10 +248,11 @@ rule feedback_figure:
         "../envs/swaystride.yaml"
     params:
         models=lambda wildcards, input: Path(input.observations).parent,
+        recordings=lambda wildcards, input: Path(input.recordings[0]).parent,
         simulated=project.simulated_flag,
     shell:
         "python scripts/feedback_figure.py --figure {wildcards.figure:q}"
-        " --models {params.models:q} --recordings {input.recordings:q} --effects {input.effects:q}"
+        " --models {params.models:q} --recordings {params.recordings:q} --effects {input.effects:q}"
         " --printed {input.printed:q} --parameters {input.parameters:q} {params.simulated}"
         " --output {output.svg:q} 2>&1 | tee {log:q}"
 
@@ -239,7 +272,7 @@ rule feedback:
 rule feedback_recovery_raw:
     input:
         code("scripts/feedback_recovery_raw.py"),
-        parameters="results/synthetic/feedback/printed/parameters/"
+        parameters="results/recovery/feedback/parameters/"
         "simulation+analysis.recording+analysis.measurement+analysis.model.json",
     output:
         r"results/recovery/feedback/{seed,\d+}.parquet",
@@ -255,7 +288,7 @@ rule feedback_recovery_raw:
 rule feedback_recovery:
     input:
         code("scripts/feedback_recovery.py"),
-        parameters="results/synthetic/feedback/printed/parameters/simulation+analysis.model.json",
+        parameters="results/recovery/feedback/parameters/simulation+analysis.model.json",
         printed="data/published/table_2_3.csv",
         raw=expand("results/recovery/feedback/{seed}.parquet", seed=RECOVERY_RAW_SEEDS),
     output:

@@ -24,6 +24,21 @@ rule parameter_sections:
         "printf '%s\\n' {params.values:q} 2> {log:q} > {output:q}"
 
 
+rule recovery_parameter_sections:
+    output:
+        "results/recovery/{study}/parameters/{sections}.json",
+    log:
+        "logs/recovery/{study}/parameters_{sections}.log",
+    conda:
+        "../envs/swaystride.yaml"
+    params:
+        values=lambda wildcards: project.recovery_parameters(
+            wildcards.study, *wildcards.sections.split("+")
+        ),
+    shell:
+        "printf '%s\\n' {params.values:q} 2> {log:q} > {output:q}"
+
+
 rule study_parameters:
     input:
         code("scripts/write_parameters.py"),
@@ -93,6 +108,8 @@ rule cohort_page:
 rule provenance:
     input:
         code("scripts/provenance.py"),
+        "requirements.txt",
+        lambda wildcards: project.result_files(wildcards.cohort),
         page="results/{cohort}/report.html",
         pages=lambda wildcards: [
             f"results/{wildcards.cohort}/{study}/{project.base_variant}/report.html"
@@ -117,14 +134,7 @@ rule provenance:
                 for study in project.studies
             ),
         ],
-        outputs=lambda wildcards: [
-            f"results/{wildcards.cohort}/report.html",
-            *(
-                f"results/{wildcards.cohort}/{study}/{part}"
-                for study in project.studies
-                for part in ("recordings", "quality", project.base_variant)
-            ),
-        ],
+        outputs=lambda wildcards: project.result_files(wildcards.cohort),
     shell:
         "python scripts/provenance.py --commit {params.commit:q} --config {params.config:q}"
         " --seed {params.seed} --packages {params.packages} --inputs {params.inputs:q}"

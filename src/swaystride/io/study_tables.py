@@ -32,6 +32,8 @@ class Column:
         Range of a numeric column, ends included.
     may_be_empty : bool
         Whether a cell may be empty (it becomes NaN, or an empty text).
+    pattern : str
+        Regular expression that the whole cell must match (text columns).
     required : bool
         Whether the column must be there; an absent optional column is added empty.
     """
@@ -41,6 +43,7 @@ class Column:
     minimum: float | None = None
     maximum: float | None = None
     may_be_empty: bool = False
+    pattern: str = ""
     required: bool = True
 
 
@@ -73,9 +76,16 @@ def read_study_table(
     if not path.is_file():
         raise DesignError("no such file", file=path)
     try:
-        raw = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False)
+        with path.open(encoding="utf-8-sig") as file:
+            header = file.readline().rstrip("\n").split("\t")
+        twice = sorted({name for name in header if header.count(name) > 1})
+        if twice:
+            raise DesignError(f"column {twice[0]!r} stands twice", file=path, place="line 1")
+        raw = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False, encoding="utf-8-sig")
     except pd.errors.EmptyDataError:
         raise DesignError("file is empty", file=path, expected="a header line") from None
+    except UnicodeDecodeError:
+        raise DesignError("not readable as text", file=path, expected="UTF-8") from None
     except pd.errors.ParserError as error:
         raise DesignError("rows of unequal length", file=path, found=str(error)) from None
     if raw.empty:
@@ -125,7 +135,10 @@ def _checked_column(cells: pd.Series, name: str, column: Column, path: Path) -> 
         bad = pd.Series(False, index=cells.index)
         if column.levels:
             bad = ~cells.isin(column.levels)
+        if column.pattern:
+            bad |= ~cells.str.fullmatch(column.pattern)
         expected = "one of " + ", ".join(column.levels) if column.levels else "text"
+        expected += " without blanks and slashes" if column.pattern else ""
         values = cells
     else:
         values = pd.to_numeric(cells.where(~empty), errors="coerce").astype("float64")

@@ -28,6 +28,10 @@ from swaystride.presentation.table_text import (
 __all__ = ["SIMULATED_NOTE", "cells_of", "column_formats", "read_table", "write_table"]
 
 
+#: Last column of the CSV tables of simulated cohorts.
+SIMULATED_COLUMN = "data"
+
+
 def column_formats(
     frame: pd.DataFrame, formats: Mapping[str, str | int]
 ) -> dict[str, ColumnFormat]:
@@ -120,7 +124,9 @@ def write_table(
     formats : mapping of str to str or int
         Column to format, see :func:`swaystride.presentation.number_format.parse_format`.
     simulated : bool
-        Whether the cohort is simulated; the renderings for people then say so.
+        Whether the cohort is simulated; the renderings for people then say so, and the CSV gets a
+        last column ``data`` with the word ``simulated`` (columns beyond the printed ones are
+        allowed by the table contract).
     labels : mapping of str to str, optional
         Words for column names and for the values of text columns, used in the renderings for
         people only.
@@ -145,8 +151,8 @@ def write_table(
     ...     files = write_table(frame, f"{folder}/table_1", caption="Effects.",
     ...                         formats={"estimate": 3}, simulated=True)
     ...     print(files[0].read_text())
-    feature,estimate
-    phi_rms,-0.030
+    feature,estimate,data
+    phi_rms,-0.030,simulated
     """
     if isinstance(notes, str):
         raise ConfigurationError("notes of a table", expected="a list of texts", found="one text")
@@ -170,7 +176,7 @@ def write_table(
         simulated=simulated,
     )
     texts = {
-        ".csv": _csv_text(header, cells_of(frame, form, "plain")),
+        ".csv": _csv_text(*_marked(header, cells_of(frame, form, "plain"), simulated)),
         ".md": to_markdown(table),
         ".tex": to_tex(table),
         ".html": to_html(table),
@@ -250,6 +256,15 @@ def _require_unique(header: Sequence[str], *, file: str | None) -> None:
             expected="unique names",
             found=", ".join(twice),
         )
+
+
+def _marked(
+    header: list[str], rows: list[list[str]], simulated: bool
+) -> tuple[list[str], list[list[str]]]:
+    """Header and rows with the last column that says where simulated numbers come from."""
+    if not simulated:
+        return header, rows
+    return [*header, SIMULATED_COLUMN], [[*row, "simulated"] for row in rows]
 
 
 def _csv_text(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from swaystride.errors import SwaystrideError
-from swaystride.presentation.table_files import read_table
+from swaystride.presentation.table_files import SIMULATED_COLUMN, read_table
 from swaystride.report.comparison import Summary, compare_numbers, compare_words, summarise
 from swaystride.report.comparison_view import number_view, word_view
 from swaystride.report.content import (
@@ -150,7 +150,8 @@ def _figure(item: ItemText, base: Path, path: Path, command: str) -> FigureItem:
 
 
 def _table(item: ItemText, base: Path, path: Path, printed_dir: Path, command: str) -> TableItem:
-    frame = read_table(base / path)
+    # the page says "simulated" in its own ways
+    frame = read_table(base / path).drop(columns=SIMULATED_COLUMN, errors="ignore")
     if item.columns:
         require_columns(frame, item.columns, "reproduced")
     printed = read_table(base / printed_dir / item.printed) if item.printed else None

@@ -29,7 +29,7 @@ INPUTS: Final = ("ln_noise_ap", "ln_noise_ml", "activity", "pendulum_height_m")
 #: The features that a simulated trial can have as wanted truth; the others follow from them.
 FEATURES: Final = ("ap_rms", "ml_rms", "phi_mv")
 
-_FILE: Final = Path(__file__).with_suffix(".json")
+_FILE: Final = Path(__file__).with_name("standing_response.json")
 _MAX_ITERATIONS: Final = 50
 _TOLERANCE: Final = 1e-11
 #: How far beyond the fitted range Newton's method may look on its way, in half-ranges.

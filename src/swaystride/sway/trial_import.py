@@ -29,6 +29,8 @@ class RecordingRules:
         Units of ``acc``, ``gyr`` (and ``mag``) for files that do not state them.
     shortest_duration_s : float
         A trial shorter than this is excluded.
+    longest_duration_s : float
+        A trial longer than this is excluded.
     longest_gap_s : float
         A trial with a longer run of missing samples is excluded; shorter ones are filled.
     """
@@ -36,6 +38,7 @@ class RecordingRules:
     rate_hz: float | None
     units: Mapping[str, str] | None
     shortest_duration_s: float
+    longest_duration_s: float
     longest_gap_s: float
 
 
@@ -124,6 +127,9 @@ def unusable(recording: Recording, rules: RecordingRules) -> dict[str, str] | No
     if duration_s < rules.shortest_duration_s - 0.5 / rate_hz:
         expected, found = f"at least {rules.shortest_duration_s:g} s", f"{duration_s:.2f} s"
         return {"reason": "data loss: trial too short", "expected": expected, "found": found}
+    if duration_s > rules.longest_duration_s + 0.5 / rate_hz:
+        expected, found = f"at most {rules.longest_duration_s:g} s", f"{duration_s:.2f} s"
+        return {"reason": "trial too long", "expected": expected, "found": found}
     runs = missing_runs(six_axis_signals(recording))
     longest_s = float(runs["length"].max()) / rate_hz if len(runs) else 0.0
     if longest_s > rules.longest_gap_s:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,8 @@ from swaystride.signals.filters import Direction, butterworth_lowpass
 from swaystride.signals.gaps import fill_short_gaps, missing_runs
 from swaystride.signals.orientation import FusionMethod, remap_axes
 from swaystride.sway.angles import trunk_angles
-from swaystride.sway.metrics import sway_metrics
+from swaystride.sway.metrics import SWAY_MEASURE_UNITS, sway_metrics
+from swaystride.sway.trial_checks import check_standing_signals
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,6 @@ class MeasurementMethod:
         that the mean is the gyroscope's bias.
     filter_order, cutoff_hz, filter_direction, pad_s
         See :func:`swaystride.signals.filters.butterworth_lowpass`.
-    longest_gap_s : float
-        Longest run of missing samples that is filled by interpolation.
     """
 
     sensor_forward: str
@@ -45,7 +45,10 @@ class MeasurementMethod:
     cutoff_hz: float
     filter_direction: Direction
     pad_s: float
-    longest_gap_s: float
+
+
+#: What :func:`measure_trial` returns.
+TRIAL_MEASURES: Final = ("duration_s", "samples_filled", *SWAY_MEASURE_UNITS)
 
 
 def filtered_sway(
@@ -66,20 +69,21 @@ def filtered_sway(
         Forward and right lean positive.
     """
     rate_hz = recording.attrs["rate_hz"]
-    longest_gap = round(method.longest_gap_s * rate_hz)
-    acc, gyr = fill_short_gaps(six_axis_signals(recording), longest_gap=longest_gap).reshape(
-        2, 3, -1
-    )
-    if method.remove_mean_rate:
-        gyr = gyr - gyr.mean(axis=1, keepdims=True)
+    # the import has excluded what may not be filled
+    signals = six_axis_signals(recording)
+    acc, gyr = fill_short_gaps(signals, longest_gap=signals.shape[1]).reshape(2, 3, -1)
     axes = {
         "forward": method.sensor_forward,
         "left": method.sensor_left,
         "up": method.sensor_up,
     }
+    acc, gyr = remap_axes(acc, **axes), remap_axes(gyr, **axes)
+    check_standing_signals(acc, gyr, file=recording.attrs["source_file"])
+    if method.remove_mean_rate:
+        gyr = gyr - gyr.mean(axis=1, keepdims=True)
     angles = trunk_angles(
-        remap_axes(acc, **axes),
-        remap_axes(gyr, **axes),
+        acc,
+        gyr,
         rate_hz,
         tau_acc_s=method.tau_acc_s,
         method=method.fusion,

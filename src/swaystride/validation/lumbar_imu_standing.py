@@ -30,6 +30,9 @@ DATASET: Final = "lumbar_imu_standing"
 #: Shortest quiet window that is measured, in samples: the shortest one in the data set.
 SHORTEST_WINDOW: Final = 229
 
+#: Longest gap that is filled, as in the feedback study.
+LONGEST_GAP_S: Final = 0.25
+
 #: Measures that are compared with and without rebuilt gaps.
 MEASURES: Final = ("ap_rms", "ml_rms", "phi_mv", "path_length", "ellipse_area_prediction")
 
@@ -49,7 +52,6 @@ METHOD: Final = MeasurementMethod(
     cutoff_hz=2.0,
     filter_direction="zero_lag",
     pad_s=3.0,
-    longest_gap_s=0.25,
 )
 
 
@@ -143,7 +145,7 @@ def _quiet_measures(recording: Recording, n_samples: int) -> dict[str, float]:
         "pattern_longest_gap_s": longest_gap_s,
         **{name: complete[name] for name in MEASURES},
     }
-    if pattern.any() and longest_gap_s <= METHOD.longest_gap_s:
+    if pattern.any() and longest_gap_s <= LONGEST_GAP_S:
         gappy = quiet.where(~xr.DataArray(pattern, dims="time"))
         rebuilt = measure_trial(gappy, METHOD)
         glued = measure_trial(quiet.isel(time=np.flatnonzero(~pattern)), METHOD)

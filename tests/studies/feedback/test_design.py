@@ -55,7 +55,9 @@ def trials_table(participant="A"):
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "participants.tsv").write_text(PARTICIPANTS, encoding="utf-8")
-    trials = pd.concat([trials_table("A"), trials_table("B").assign(feedback_shown="none")])
+    other = trials_table("B").assign(feedback_shown="none")
+    other["feedback"] = other["feedback"].map({"terminal": "concurrent", "concurrent": "terminal"})
+    trials = pd.concat([trials_table("A"), other])
     write_study_table(trials, tmp_path / "trials.tsv")
     return tmp_path
 
@@ -126,6 +128,11 @@ def spoil(folder, file, old, new):
         ("participants.tsv", "B\tcon", "A\tcon", "line 3: row stands twice; found participant A"),
         ("trials.tsv", "A\t2\t", "C\t2\t", "line 3, .* not in participants.tsv; found 'C'"),
         ("trials.tsv", "A\t3\t", "A\t2\t", "line 4: row stands twice"),
+        ("participants.tsv", "A\tterminal", "A\tconcurrent", "block 1: .* contradicts the order"),
+        ("participants.tsv", "A\tterm", "A 1\tterm", "without blanks and slashes; found 'A 1'"),
+        ("participants.tsv", "sex\theight_m", "sex\tsex", "column 'sex' stands twice"),
+        ("trials.tsv", "A/4.txt", "A/3.txt", "lines 4, 5: two trials name the same file"),
+        ("trials.tsv", "A\t3\t1\tterm", "A\t3\t2\tterm", "blocks are mixed"),
         ("trials.tsv", "A\t3\t", "A\t3.5\t", "line 4, column session_trial: .* an integer"),
         ("trials.tsv", "baseline\t\t1\tnone", "baseline\t\t1\tterminal", "line 2, .* contradicts"),
         ("trials.tsv", "training\t1\t1", "trainin\t1\t1", "one of baseline, training; found 'tr"),
@@ -136,6 +143,15 @@ def test_a_wrong_table_is_one_line_with_file_and_place(folder, file, old, new, l
     with pytest.raises(DesignError, match=line) as caught:
         read_design(folder)
     assert file in str(caught.value)
+
+
+def test_a_table_that_is_not_utf8_is_named(folder):
+    path = folder / "participants.tsv"
+    path.write_bytes(path.read_bytes().replace(b"A\t", b"J\xf6rg\t"))
+    with pytest.raises(
+        DesignError, match=r"participants\.tsv: not readable as text; expected UTF-8"
+    ):
+        read_design(folder)
 
 
 def test_missing_and_empty_tables_are_named(folder):

@@ -1,8 +1,10 @@
 """Printed effects against the identities among the six features (register I-02c)."""
 
 import numpy as np
+import pandas as pd
 
-from swaystride.studies.feedback.identities import attainability
+from import_graph import REPOSITORY
+from swaystride.studies.feedback.identities import attainability, block_change_attainability
 
 
 def verdicts(table):
@@ -72,3 +74,14 @@ def test_reasons_name_the_identity(printed):
     assert "PL = MV × duration" in reasons["path_length"]
     assert "Phi² = AP² + ML²" in reasons["phi_rms"]
     assert "EA ∝ AP × ML" in reasons["ellipse_area"]
+
+
+def test_the_difference_of_the_text_does_not_follow_from_table_2_3(printed):
+    """−.081 is printed; −.116·15^0.1 + (−.027 + .170) is −.009 (register I-02c)."""
+    text = pd.read_csv(REPOSITORY / "data" / "published" / "table_2_4.csv")
+    marks = block_change_attainability(printed, text, 15)
+    row = marks[(marks["effect"] == "terminal_minus_concurrent") & (marks["feature"] == "phi_mv")]
+    assert not row["attainable"].item()
+    assert "implied -0.009" in row["attainable_reason"].item()
+    text.loc[row.index, "estimate"] = -0.009
+    assert block_change_attainability(printed, text, 15)["attainable"].all()

@@ -15,7 +15,7 @@ TrialNumberCoding = Literal["continue", "reset"]
 
 #: What participants.tsv must hold.
 PARTICIPANT_COLUMNS: Final = {
-    "participant": Column("text"),
+    "participant": Column("text", pattern=r"[^/\\\s]+"),
     "order": Column("text", levels=("concurrent_first", "terminal_first")),
     "age_years": Column("number", minimum=0, maximum=120),
     "sex": Column("text", levels=("F", "M")),
@@ -96,8 +96,50 @@ def read_design(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
             expected="none in a baseline, else none or the feedback of the block",
             found=str(trials.loc[row, "feedback_shown"]),
         )
+    _check_session_structure(participants, trials, trials_file)
     trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
     return participants, trials
+
+
+def _check_session_structure(participants: pd.DataFrame, trials: pd.DataFrame, file: Path) -> None:
+    """Hold the sequence of blocks against the order of each participant, and files against rows."""
+    first_feedback = participants.set_index("participant")["order"].str.removesuffix("_first")
+    for participant, session in trials.sort_values("session_trial").groupby("participant"):
+        place = f"participant {participant}"
+        if not session["block"].is_monotonic_increasing:
+            raise DesignError(
+                "blocks are mixed within the session", file=file, place=place,
+                expected="all trials of block 1 before those of block 2",
+            )  # fmt: skip
+        for block, rows in session.groupby("block"):
+            first = str(first_feedback[participant])
+            other = "terminal" if first == "concurrent" else "concurrent"
+            expected = first if block == 1 else other
+            if (rows["feedback"] != expected).any():
+                raise DesignError(
+                    "feedback of a block contradicts the order of the participant",
+                    file=file,
+                    place=f"{place}, block {block}",
+                    expected=f"{expected} ({first}_first in participants.tsv)",
+                    found=", ".join(sorted(set(rows["feedback"]))),
+                )
+            if not (rows["phase"] == "training").is_monotonic_increasing:
+                raise DesignError(
+                    "a baseline trial follows a training trial of its block",
+                    file=file,
+                    place=f"{place}, block {block}",
+                    expected="baseline first",
+                )
+    used = trials[trials["exclude"] == ""]
+    shared = used["file"].duplicated(keep=False)
+    if shared.any():
+        name = used.loc[shared, "file"].iloc[0]
+        raise DesignError(
+            "two trials name the same file",
+            file=file,
+            place=f"lines {', '.join(str(i + 2) for i in used.index[used['file'] == name])}",
+            found=name,
+        )
 
 
 def model_variables(

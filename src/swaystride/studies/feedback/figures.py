@@ -23,26 +23,27 @@ CONDITIONS = {
 
 
 def figure_feedback_displays(
-    ap_deg: NDArray[np.float64], ml_deg: NDArray[np.float64], rate_hz: float, *, instant_s: float
+    concurrent_deg: NDArray[np.float64], terminal_deg: NDArray[np.float64], *, instant: int
 ) -> Figure:
-    """Both feedback displays for one trial (Figure 2.1).
+    """Both feedback displays (Figure 2.1).
 
     Parameters
     ----------
-    ap_deg, ml_deg : ndarray, shape (n_samples,)
-        Trunk angles as analysed, forward and right positive.
-    rate_hz : float
-    instant_s : float
-        Time at which the concurrent display is shown.
+    concurrent_deg : ndarray, shape (2, n_samples)
+        AP and ML lean of a trial with concurrent feedback, forward and right positive.
+    terminal_deg : ndarray, shape (2, n_samples)
+        The same of the trial that a participant sees before a trial with terminal feedback.
+    instant : int
+        Sample at which the concurrent display is shown.
     """
-    ap, ml = ap_deg - ap_deg.mean(), ml_deg - ml_deg.mean()
-    half_width = 1.15 * float(np.max(np.abs([ap, ml])))
-    index = min(round(instant_s * rate_hz), ap.size - 1)
+    now = (concurrent_deg - concurrent_deg.mean(axis=1, keepdims=True))[:, instant]
+    trace = terminal_deg - terminal_deg.mean(axis=1, keepdims=True)
+    half_width = 1.15 * float(max(np.abs(now).max(), np.abs(trace).max()))
     fig = new_figure("double", height_mm=82)
     left, right = fig.subplots(1, 2, sharex=True, sharey=True)
-    left.plot(ml[index], ap[index], "o", color=OKABE_ITO["blue"], markersize=9)
-    left.set_title(f"Concurrent: the angles now (t = {instant_s:g} s)")
-    right.plot(ml, ap, color=OKABE_ITO["vermillion"], linewidth=0.8)
+    left.plot(now[1], now[0], "o", color=OKABE_ITO["blue"], markersize=9)
+    left.set_title("Concurrent: the lean of this instant")
+    right.plot(trace[1], trace[0], color=OKABE_ITO["vermillion"], linewidth=0.8)
     right.set_title("Terminal: the whole of the previous trial")
     for axes in (left, right):
         axes.axhline(0, color=OKABE_ITO["black"], linewidth=0.6, zorder=0)
@@ -53,6 +54,27 @@ def figure_feedback_displays(
         axes.set_ylim(-half_width, half_width)
     left.set_ylabel("anterior-posterior lean, deg (forward +)")
     return fig
+
+
+def display_trials(trials: pd.DataFrame) -> tuple[str, str]:
+    """Which trials of one participant Figure 2.1 shows.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        Analysed trials of one participant: ``trial``, ``session_trial``, ``feedback_shown``.
+
+    Returns
+    -------
+    concurrent, terminal : str
+        The first trial with concurrent feedback, and the trial before the first one with terminal
+        feedback (its trace is what that display shows). Without such trials: the first trial.
+    """
+    session = trials.sort_values("session_trial")
+    names, shown = session["trial"].tolist(), session["feedback_shown"].tolist()
+    concurrent = shown.index("concurrent") if "concurrent" in shown else 0
+    terminal = max(shown.index("terminal") - 1, 0) if "terminal" in shown else 0
+    return names[concurrent], names[terminal]
 
 
 def figure_trial_structure(trials: pd.DataFrame) -> Figure:

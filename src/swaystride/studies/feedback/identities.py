@@ -55,6 +55,51 @@ def attainability(printed: pd.DataFrame, last_training_trial: int) -> pd.DataFra
     return pd.DataFrame(verdicts, columns=columns)
 
 
+def block_change_attainability(
+    printed: pd.DataFrame, text: pd.DataFrame, last_training_trial: int
+) -> pd.DataFrame:
+    """Mark the values of the text on the first block that Table 2.3 contradicts.
+
+    The difference between the blocks is that of the training effects over all trials plus that
+    of the two removals (spec §8.3).
+
+    Parameters
+    ----------
+    printed, text : DataFrame
+        ``data/published/table_2_3.csv`` and ``table_2_4.csv``.
+    last_training_trial : int
+        Trial number N at the end of the block.
+
+    Returns
+    -------
+    DataFrame
+        ``effect``, ``feature``, ``attainable`` and ``attainable_reason`` for every row of `text`.
+    """
+    rows = {
+        (str(row["panel"]), str(row["feature"]), str(row["effect"])): row
+        for row in printed.to_dict("records")
+    }
+    verdicts = []
+    for row in text.to_dict("records"):
+        effect, feature, value = str(row["effect"]), str(row["feature"]), float(row["estimate"])
+        if effect != "terminal_minus_concurrent" or np.isnan(value):
+            verdicts.append((effect, feature, True, ""))
+            continue
+        training = rows["training", feature, effect]
+        scale = last_training_trial ** float(training["exponent"])
+        removal = [
+            float(rows["removal", feature, name]["estimate"]) for name in ("terminal", "concurrent")
+        ]
+        implied = float(training["estimate"]) * scale + removal[0] - removal[1]
+        slack = ROUNDING * (scale + 3)
+        ok = abs(implied - value) <= slack
+        verb = "follows from" if ok else "does not follow from"
+        reason = f"{verb} Table 2.3: printed {value:.3f}, implied {implied:.3f} ± {slack:.3f}"
+        verdicts.append((effect, feature, ok, reason))
+    columns = ["effect", "feature", "attainable", "attainable_reason"]
+    return pd.DataFrame(verdicts, columns=columns)
+
+
 def _verdict(
     rows: Mapping[tuple[str, str, str], tuple[float, float]],
     panel: str,

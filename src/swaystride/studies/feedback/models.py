@@ -7,19 +7,25 @@ of Tables 2.3 and 2.4 are weighted sums of fixed effects of these models.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from swaystride.errors import DesignError
+from swaystride.errors import DesignError, ModelError
 from swaystride.stats.mixed_model import MixedModelFit, fit_mixed_model
-from swaystride.stats.selection import eliminate_terms, raise_to_exponent, search_exponent
+from swaystride.stats.selection import (
+    Elimination,
+    ExponentSearch,
+    eliminate_terms,
+    raise_to_exponent,
+    search_exponent,
+)
 from swaystride.studies.feedback.design import MODEL_VARIABLES, model_variables
 from swaystride.studies.feedback.plan import (
-    FEATURES,
     MAXIMAL_TERMS,
     TERMS_OF_INTEREST,
     TRIAL_NUMBER,
@@ -176,6 +182,7 @@ def effect_estimates(
                 "refit_with": " ".join(lacking),
                 **_estimate(effect, used, plan),
                 "n": used.fit.n_observations,
+                "last_training_trial": plan.last_training_trial,
             }
         )
     return pd.DataFrame(rows)
@@ -197,26 +204,22 @@ def model_frame(frame: pd.DataFrame, feature: str, exponent: float) -> pd.DataFr
     return raise_to_exponent(variables, TRIAL_NUMBER, exponent)
 
 
-def collect(folder: Path, name: str) -> pd.DataFrame:
-    """Read one table of all six features, in the order of the chapter.
-
-    Parameters
-    ----------
-    folder : Path
-        ``…/models``, with one subfolder per feature.
-    name : str
-        For example ``contrasts``.
-    """
-    tables = [pd.read_parquet(folder / feature / f"{name}.parquet") for feature in FEATURES]
-    return pd.concat(tables, ignore_index=True)
-
-
 def _search(
     frame: pd.DataFrame, feature: str, plan: ModelPlan
 ) -> tuple[pd.DataFrame, pd.DataFrame, float, tuple[str, ...]]:
     """Exponent by the likelihood of the maximal model, then terms by AIC."""
     n_exponents = round((plan.largest_exponent - plan.smallest_exponent) / plan.exponent_step) + 1
-    grid = plan.smallest_exponent + plan.exponent_step * np.arange(n_exponents)
+    grid = plan.smallest_exponent + plan.exponent_step * np.arange(n_exponents, dtype=np.float64)
+    with _named(f"maximal model of {feature}"):
+        search, chosen = _search_maximal(frame, feature, grid)
+    exponents = search.loglik.rename_axis("exponent").reset_index()
+    return exponents, chosen.path, search.best, chosen.terms
+
+
+def _search_maximal(
+    frame: pd.DataFrame, feature: str, grid: NDArray[np.float64]
+) -> tuple[ExponentSearch, Elimination]:
+    """Search the exponent, then eliminate terms at the best one."""
     search = search_exponent(
         model_frame(frame, feature, 1.0),
         "log_feature",
@@ -232,8 +235,21 @@ def _search(
         [PARTICIPANT],
         protected=TERMS_OF_INTEREST,
     )
-    exponents = search.loglik.rename_axis("exponent").reset_index()
-    return exponents, chosen.path, search.best, chosen.terms
+    return search, chosen
+
+
+@contextmanager
+def _named(model: str) -> Iterator[None]:
+    """Name the model in errors, and what a cohort needs for it."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(
+            error.problem,
+            place=model,
+            expected=error.expected or "participants of both orders and both sexes, both blocks",
+            found=error.found,
+        ) from error
 
 
 def _fit(
@@ -247,7 +263,8 @@ def _fit(
     """Fit one model by the estimator of the plan."""
     formula = f"log_feature ~ {' + '.join(terms)} + (1|{PARTICIPANT})"
     variables = model_frame(frame, feature, exponent)
-    fit = fit_mixed_model(formula, variables, reml=plan.estimator == "reml")
+    with _named(f"{name} model of {feature}"):
+        fit = fit_mixed_model(formula, variables, reml=plan.estimator == "reml")
     return FeatureModel(name, exponent, tuple(terms), fit)
 
 

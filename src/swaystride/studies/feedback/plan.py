@@ -157,5 +157,10 @@ def effects(exponent: float, last_training_trial: int) -> list[Effect]:
         Effect("removal", "terminal", {TERMINAL_REMOVED: 1.0, TERMINAL_REMOVED_X_ORDER: 1.0}),
         Effect("block_change", "concurrent", concurrent_change),
         Effect("block_change", "terminal", terminal_change),
-        Effect("block_change", "terminal_minus_concurrent", change_difference),
+        Effect(
+            "block_change",
+            "terminal_minus_concurrent",
+            change_difference,
+            required=(BLOCK_X_TRIAL_NUMBER,),
+        ),
     ]

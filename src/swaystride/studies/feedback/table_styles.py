@@ -53,7 +53,7 @@ TABLE_STYLES: Final = {
     ),
     "table_2_2": TableStyle(
         "Table 2.2. Exponent on the trial number and terms kept by the search.",
-        ("yes*: included, p < 0.05; yes: included; no: eliminated by AIC.",),
+        ("yes*: included and significant; yes: included; no: eliminated by AIC.",),
         {"exponent": 1},
     ),
     "table_2_3": TableStyle(
@@ -74,17 +74,17 @@ TABLE_STYLES: Final = {
     ),
     "table_2_4": TableStyle(
         "Table 2.4. Change of the log of each feature from baseline to the end of the first block.",
-        ("The last trial of a block is without feedback (N = 15).",),
+        ("The last trial of a block is without feedback.",),
         _EFFECTS,
     ),
     "coverage": TableStyle(
-        "Printed estimates of Table 2.3 that the 95 % intervals of this cohort cover.",
+        "Printed estimates of Table 2.3 that the confidence intervals of this cohort cover.",
         (),
         {"n": "integer", "covered": "integer"},
     ),
     "claims": TableStyle(
         "Claims of the chapter's prose, and what this cohort shows.",
-        ("Judged on the effects at the printed exponents and terms, α = 0.05.",),
+        ("Judged on the effects at the printed exponents and terms.",),
     ),
     "truth": TableStyle(
         "Effects of the simulated cohort beside the truth that it was drawn from.",

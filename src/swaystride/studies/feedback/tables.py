@@ -6,7 +6,10 @@ from typing import Final
 
 import pandas as pd
 
-from swaystride.studies.feedback.identities import attainability
+from swaystride.studies.feedback.identities import (
+    attainability,
+    block_change_attainability,
+)
 from swaystride.studies.feedback.plan import FEATURES, MAXIMAL_TERMS
 
 #: Term of the model -> its column in Table 2.2.
@@ -85,7 +88,9 @@ def table_2_3(contrasts: pd.DataFrame, printed: pd.DataFrame, last_trial: int) -
         shows although its model lacks it) and whether the printed row is jointly attainable.
     """
     keys = ["panel", "feature", "effect"]
-    ours = contrasts[contrasts["model"] == "printed"].drop(columns=["model", "t"])
+    ours = contrasts[contrasts["model"] == "printed"].drop(
+        columns=["model", "t", "last_training_trial"]
+    )
     marks = attainability(printed, last_trial)
     table = printed[keys].merge(ours, on=keys, how="left", validate="one_to_one")
     table = table.merge(marks, on=keys, validate="one_to_one")
@@ -111,7 +116,7 @@ def table_2_3_searched(contrasts: pd.DataFrame, printed: pd.DataFrame) -> pd.Dat
     return table[[*first, "se", "df", "n", "refit_with"]]
 
 
-def table_2_4(contrasts: pd.DataFrame) -> pd.DataFrame:
+def table_2_4(contrasts: pd.DataFrame, printed: pd.DataFrame, text: pd.DataFrame) -> pd.DataFrame:
     """Change from baseline to the end of the first block.
 
     The printed table repeats Table 2.3 (spec I-01); this is the contrast that its text describes.
@@ -120,12 +125,19 @@ def table_2_4(contrasts: pd.DataFrame) -> pd.DataFrame:
     ----------
     contrasts : DataFrame
         Contrasts of all features.
+    printed, text : DataFrame
+        data/published/table_2_3.csv and table_2_4.csv: whether a value of the text can follow
+        from Table 2.3.
     """
     ours = contrasts.query("model == 'printed' and panel == 'block_change'")
+    last_trial = int(ours["last_training_trial"].iloc[0])
+    marks = block_change_attainability(printed, text, last_trial)
+    ours = ours.merge(marks, on=["effect", "feature"], how="left")
     order = ["concurrent", "terminal", "terminal_minus_concurrent"]
     ours = ours.sort_values("effect", key=lambda name: name.map(order.index), kind="stable")
     first = ["effect", "feature", "p", "estimate", "ci_low", "ci_high"]
-    return ours[[*first, "exponent", "se", "df", "n"]].reset_index(drop=True)
+    last = ["exponent", "se", "df", "n", "refit_with", "attainable", "attainable_reason"]
+    return ours[[*first, *last]].reset_index(drop=True)
 
 
 def coverage_of_print(table: pd.DataFrame, printed: pd.DataFrame) -> pd.DataFrame:

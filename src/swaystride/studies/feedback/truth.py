@@ -1,8 +1,9 @@
 """True effects of a simulated cohort: what the printed models would estimate without scatter.
 
-For AP RMS, ML RMS and MV these are the effects that were put in. Those of Phi RMS, PL and EA
-follow from them, and because a log of a sum is not linear, they are the best linear summary of the
-true expectations under the printed model. Only tests and error tables use this module.
+For ML RMS and MV these are the effects that were put in. For AP RMS they differ a little, because
+its printed model lacks ``block:trial_number``, which is not zero in the population. Those of
+Phi RMS, PL and EA follow from the other three: the best linear summary of the true expectations
+under the printed model. Only tests and error tables use this module.
 """
 
 from __future__ import annotations
