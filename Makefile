@@ -4,7 +4,8 @@
 #   make feedback     one study                         make variants   every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
-#   make dry-run      what would be done                make clean      remove results and generated data
+#   make dry-run      what would be done                make benchmark  time and memory of the feedback study
+#   make clean        remove results and generated data
 
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
@@ -18,7 +19,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback variants validation recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback variants validation benchmark recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -36,6 +37,9 @@ validation: setup
 	@$(SNAKEMAKE) -- validation
 	@! grep ',no$$' results/validation/summary.csv \
 		|| { echo "validation: the values above are not within tolerance" >&2; exit 1; }
+
+benchmark: setup
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python scripts/benchmark_feedback.py --cores $(CORES)
 
 recovery: setup
 	@$(SNAKEMAKE) -- recovery

@@ -10,11 +10,11 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from swaystride.checksums import file_sha256
 from swaystride.errors import RecordingError
 from swaystride.findings import Finding
 from swaystride.recording import (
     Recording,
-    file_sha256,
     findings_of,
     list_recordings,
     load_recording,

@@ -14,7 +14,6 @@ A recording is an :class:`xarray.Dataset` with
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -217,15 +216,3 @@ def list_recordings(path: Path | str) -> list[str]:
 
     with h5netcdf.File(path, "r") as file:
         return sorted(file.groups)
-
-
-def file_sha256(path: Path | str) -> str:
-    """SHA-256 of a file's bytes, in hexadecimal.
-
-    Parameters
-    ----------
-    path : path or str
-        File of any kind.
-    """
-    with Path(path).open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

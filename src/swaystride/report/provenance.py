@@ -13,6 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from swaystride.checksums import file_sha256
 from swaystride.errors import ConfigurationError, DesignError
 
 
@@ -152,11 +153,6 @@ def _files(paths: Iterable[Path | str], base: Path) -> list[dict[str, Any]]:
             raise DesignError("no such file", file=name)
         relative[name] = file
     return [
-        {"path": name, "sha256": _sha256(file), "bytes": file.stat().st_size}
+        {"path": name, "sha256": file_sha256(file), "bytes": file.stat().st_size}
         for name, file in sorted(relative.items())
     ]
-
-
-def _sha256(file: Path) -> str:
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from swaystride.checksums import file_sha256
 from swaystride.errors import RecordingError
-from swaystride.recording import file_sha256
 
 
 def load_manifest(dataset: str) -> pd.DataFrame:
