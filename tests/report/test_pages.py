@@ -310,7 +310,13 @@ def test_empty_study_is_a_page_too(make_content):
         findings=pd.DataFrame(columns=FINDING_COLUMNS),
     )
     page = checked(render_study_page(content))
-    assert "found nothing to report" in page.text
+    for heading in ("Participant flow", "Data quality", "Parameters", "Tables"):
+        assert heading not in page.text
+
+
+def test_recordings_without_findings_are_said_to_be_so(make_content):
+    content = dataclasses.replace(make_content(), findings=pd.DataFrame(columns=FINDING_COLUMNS))
+    assert "found nothing to report" in checked(render_study_page(content)).text
 
 
 def test_templates_belong_to_the_module_by_name():

@@ -110,6 +110,10 @@ def sections(study: StudyContent) -> list[PageSection]:
     """
     filled = {
         "glance": bool(study.compared),
+        # a page without recordings of its own has neither flow nor findings nor parameters
+        "flow": bool(study.flow),
+        "quality": bool(study.flow),
+        "parameters": bool(study.parameters),
         "notes": bool(study.notes),
         "regenerate": bool(study.items),
     }
