@@ -10,7 +10,8 @@ sys.path[:0] = [
     str(Path(workflow.basedir) / "workflow"),
 ]
 
-from project import Project, code, commit, prepare_environment
+from jobs import code, commit, prepare_environment
+from project import Project
 
 
 configfile: "config/config.yaml"

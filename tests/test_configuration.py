@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import pytest
 
 from import_graph import REPOSITORY
-from project import SCHEMAS, Project, load_study, resolve
+from project import Project
+from study_parameters import SCHEMAS, load_study, resolve
 from swaystride.configuration import (
     from_mapping,
     iter_parameters,

@@ -1,4 +1,4 @@
-"""What the rules need to know: cohorts, units, paths, resolved parameters, code dependencies.
+"""What the rules need to know: cohorts, units, paths, parameters, pages.
 
 Everything here is known when the Snakefile is parsed, so that a dry run shows the true DAG.
 """
@@ -8,37 +8,17 @@ from __future__ import annotations
 import csv
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from import_graph import REPOSITORY, SOURCE, dependencies, module_file
-from swaystride.configuration import (
-    Tree,
-    iter_parameters,
-    load_yaml,
-    overlay,
-    plain_values,
-    validate,
-)
+from import_graph import REPOSITORY
+from study_parameters import BASE_VARIANT, SCHEMAS, STAGES, load_study, resolve, sections_json
+from swaystride.configuration import Tree, iter_parameters, load_yaml, plain_values, validate
 from swaystride.errors import ConfigurationError
-
-SCHEMAS = REPOSITORY / "workflow" / "schemas"
-
-#: Stages of a study, in order. A variant names the first one that it changes.
-STAGES = ("metrics", "models")
-
-#: Section of the parameters -> the first stage that uses it. Others belong to all variants.
-STAGE_OF_SECTION = {"analysis.measurement": "metrics", "analysis.model": "models"}
 
 #: Public real recordings that `make validation` uses.
 VALIDATION_DATASETS = ("standing_force_plate", "lumbar_imu_standing")
-
-#: The variant whose results the others share up to their first own stage.
-BASE_VARIANT = "printed"
 
 
 class Project:
@@ -158,23 +138,11 @@ class Project:
 
     def parameters(self, study: str, cohort: str, variant: str, *sections: str) -> str:
         """Plain values of the named sections (dotted paths), as JSON for a script."""
-        return self._sections(self.parameter_tree(study, cohort, variant), sections)
-
-    @staticmethod
-    def _sections(tree: Tree, sections: tuple[str, ...]) -> str:
-        """Plain values of some sections, each under the last part of its path."""
-        values = plain_values(tree)
-        chosen: Tree = {}
-        for section in sections:
-            node: Any = values
-            for part in section.split("."):
-                node = node[part]
-            chosen[section.rsplit(".", 1)[-1]] = node
-        return json.dumps(chosen, sort_keys=True)
+        return sections_json(self.parameter_tree(study, cohort, variant), sections)
 
     def recovery_parameters(self, study: str, *sections: str) -> str:
         """Parameters of the published scale, as JSON: recovery belongs to no cohort."""
-        return self._sections(resolve(study, BASE_VARIANT, "published"), sections)
+        return sections_json(resolve(study, BASE_VARIANT, "published"), sections)
 
     # -- pages -------------------------------------------------------------------------------
     def page_files(self, study: str, cohort: str, variant: str) -> list[str]:
@@ -263,104 +231,3 @@ class Project:
             "studies": {name: self.study_files[name] for name in self.studies},
         }
         return json.dumps(config, sort_keys=True)
-
-
-@cache
-def load_study(study: str) -> Tree:
-    """Read and check the parameter file of a study, its variants and scales included."""
-    file = f"config/studies/{study}.yaml"
-    tree = load_yaml(REPOSITORY / file)
-    schema = load_yaml(SCHEMAS / f"{study}.schema.yaml")
-    validate(tree, schema, file=file)
-    for name, variant in tree["variants"].items():
-        for path in variant["changes"]:
-            stage = STAGE_OF_SECTION.get(path.rpartition(".")[0])
-            if stage is None or STAGES.index(stage) < STAGES.index(variant["first_stage"]):
-                raise ConfigurationError(
-                    f"{path!r} is used before the variant begins",
-                    file=file,
-                    place=f"variants.{name}",
-                    expected=f"first_stage {stage}"
-                    if stage
-                    else "a parameter of " + " or ".join(STAGE_OF_SECTION),
-                    found=f"first_stage {variant['first_stage']}",
-                )
-    for kind in ("variants", "scales"):
-        for name in tree[kind]:
-            changed = _apply(tree, kind, name, file)
-            validate(_without_marks({**tree, **changed}), schema, file=f"{file} ({name})")
-    return tree
-
-
-@cache
-def resolve(study: str, variant: str, scale: str) -> Tree:
-    """Parameter sections of a study under a variant and a scale."""
-    file = f"config/studies/{study}.yaml"
-    tree = load_study(study)
-    scaled = {**tree, **_apply(tree, "scales", scale, file)}
-    return _apply(scaled, "variants", variant, file)
-
-
-def _apply(tree: Tree, kind: str, name: str, file: str) -> Tree:
-    """Sections ``analysis`` and ``simulation`` with one overlay applied."""
-    sections = {section: tree[section] for section in ("analysis", "simulation")}
-    return overlay(sections, tree[kind][name].get("changes", {}), file=file, name=name)
-
-
-def _without_marks(tree: Tree) -> Tree:
-    """Drop what an overlay adds to a parameter beyond its schema."""
-    plain: Tree = json.loads(json.dumps(tree))
-    for _, parameter in iter_parameters({k: plain[k] for k in ("analysis", "simulation")}):
-        parameter.pop("changed_by", None)
-    return plain
-
-
-@cache
-def code(*modules: str) -> list[str]:
-    """Files that a rule depends on: its script or modules, and all that they import.
-
-    Parameters
-    ----------
-    *modules : str
-        Paths of scripts (``scripts/x.py``) or dotted names of library modules.
-    """
-    files: set[Path] = set()
-    for module in modules:
-        file = REPOSITORY / module if module.endswith(".py") else module_file(module)
-        if file is None or not file.is_file():
-            raise FileNotFoundError(f"no such script or module: {module}")
-        files |= {file, *dependencies(file)}
-    return sorted(str(file.relative_to(REPOSITORY)) for file in files)
-
-
-@cache
-def commit() -> str:
-    """Commit of the checkout, with ``+changes`` if tracked files differ; ``unknown`` without git."""
-    git = ["git", "-C", str(REPOSITORY)]
-    try:
-        head = subprocess.run(
-            [*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True
-        ).stdout.strip()
-        changed = subprocess.run(
-            [*git, "status", "--porcelain", "--untracked-files=no"],
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return f"{head}+changes" if changed else head
-
-
-def prepare_environment() -> None:
-    """Set what every job inherits, in this one place.
-
-    Jobs run side by side, one core each, so numerical libraries stay single-threaded; ``python``
-    is the interpreter that runs Snakemake; the library is the one of this checkout.
-    """
-    for name in ("OMP", "OPENBLAS", "MKL", "NUMEXPR", "NUMBA"):
-        os.environ[f"{name}_NUM_THREADS"] = "1"
-    os.environ["MPLBACKEND"] = "Agg"
-    os.environ["PYTHONHASHSEED"] = "0"
-    os.environ["PYTHONPATH"] = str(SOURCE)
-    os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
