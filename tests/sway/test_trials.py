@@ -1,9 +1,13 @@
 """Import of standing trials: exclusions by rule, errors by file, gaps that are filled."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from swaystride.errors import RecordingError
+from swaystride.io.xsens_txt_writer import write_xsens_txt
 from swaystride.recording import make_recording
 from swaystride.sway.trial_import import RecordingRules, import_trials, unusable
 from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
@@ -12,6 +16,7 @@ from swaystride.units import GRAVITY_M_S2
 RULES = RecordingRules(
     rate_hz=None,
     units=None,
+    duplicate_packets="error",
     shortest_duration_s=29.0,
     longest_duration_s=31.0,
     longest_gap_s=0.25,
@@ -131,3 +136,23 @@ def test_the_labs_own_exclusion_is_kept_and_the_file_not_opened(tmp_path):
     )
     assert not imported.recordings
     assert imported.exclusions["reason"].tolist() == ["stepped off the pad"]
+
+
+def test_a_duplicate_packet_is_an_error_or_kept_once_with_a_finding(tmp_path):
+    signal = standing()
+    path = tmp_path / "P01_01.txt"
+    write_xsens_txt(
+        path,
+        signal["acc"].to_numpy()[0],
+        signal["gyr"].to_numpy()[0],
+        rate_hz=100.0,
+        first_packet=7,
+    )
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join([*lines[:50], lines[49], *lines[50:]]), encoding="utf-8")
+    files = {"trial_01": Path("P01_01.txt")}
+    with pytest.raises(RecordingError, match="duplicate packet"):
+        import_trials(files, tmp_path, RULES, {})
+    kept = import_trials(files, tmp_path, replace(RULES, duplicate_packets="keep_first"), {})
+    assert kept.recordings["trial_01"].sizes["time"] == 3000
+    assert kept.findings["check"].tolist() == ["duplicate_packet"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Literal
 
 import pandas as pd
 
@@ -27,6 +28,8 @@ class RecordingRules:
         Sampling rate for files that do not say it; None: the file must.
     units : mapping of str to str, or None
         Units of ``acc``, ``gyr`` (and ``mag``) for files that do not state them.
+    duplicate_packets : {"error", "keep_first"}
+        A packet that stands twice stops the participant, or its first row is kept with a finding.
     shortest_duration_s : float
         A trial shorter than this is excluded.
     longest_duration_s : float
@@ -37,6 +40,7 @@ class RecordingRules:
 
     rate_hz: float | None
     units: Mapping[str, str] | None
+    duplicate_packets: Literal["error", "keep_first"]
     shortest_duration_s: float
     longest_duration_s: float
     longest_gap_s: float
@@ -142,7 +146,12 @@ def _read_trial(path: Path, name: str, rules: RecordingRules) -> Recording:
     """Read one file of one lumbar sensor, from its first to its last complete sample."""
     if not path.is_file():
         raise RecordingError("no such file", file=name, expected="the file named in trials.tsv")
-    recording = read_recording(path, rate_hz=rules.rate_hz, units=rules.units)
+    recording = read_recording(
+        path,
+        rate_hz=rules.rate_hz,
+        units=rules.units,
+        duplicate_packets=rules.duplicate_packets,
+    )
     for signal in ("acc", "gyr"):
         if signal not in recording:
             finding = Finding("missing_signal", "error", name, "", signal, "not in the file")
