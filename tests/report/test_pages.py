@@ -120,7 +120,7 @@ def test_same_content_gives_the_same_bytes(rendered):
 def test_page_knows_no_machine_and_no_date(rendered, repository):
     html = rendered()
     assert str(repository) not in html
-    assert not re.search(r"\b20\d\d-\d\d-\d\d\b|/home/|/tmp/|/root/|/work/", html)
+    assert not re.search(r"\b20\d\d-\d\d-\d\d\b|/(home|tmp|root|work)/", html)
 
 
 def test_simulated_cohort_is_called_so_everywhere(rendered):
