@@ -17,7 +17,7 @@ from swaystride.simulate.feedback_population import (
     variance_ratios,
 )
 from swaystride.simulate.seeds import generator
-from swaystride.studies.feedback.design import model_variables
+from swaystride.studies.feedback.design import model_variables, with_trial_names
 from swaystride.studies.feedback.identities import attainability
 from swaystride.studies.feedback.plan import ModelPlan
 from swaystride.studies.feedback.recovery import cohort_estimates, recovery_table
@@ -42,7 +42,7 @@ def main() -> None:
     cohort = cohort_from_config(arguments.parameters["simulation"])
     plan = from_mapping(ModelPlan, arguments.parameters["model"], place="analysis.model")
     participants, trials = design_tables(cohort, arguments.seed)
-    trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
+    trials = with_trial_names(trials)
     design = design_rows(participants, trials, cohort).sort_values(["participant", "session_trial"])
     variables = model_variables(participants, trials, trial_number_coding=plan.trial_number_coding)
     expected = expected_log_features(design, cohort.population)

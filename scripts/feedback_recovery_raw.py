@@ -11,6 +11,7 @@ from swaystride.configuration import from_mapping
 from swaystride.simulate.feedback_cohort import design_tables
 from swaystride.simulate.feedback_parameters import cohort_from_config
 from swaystride.simulate.feedback_recordings import write_participant
+from swaystride.studies.feedback.design import with_trial_names
 from swaystride.studies.feedback.models import observations
 from swaystride.studies.feedback.plan import FEATURES, ModelPlan
 from swaystride.studies.feedback.recovery import cohort_estimates
@@ -31,7 +32,7 @@ def main() -> None:
     method = from_mapping(MeasurementMethod, given["measurement"], place="analysis.measurement")
     plan = from_mapping(ModelPlan, given["model"], place="analysis.model")
     participants, trials = design_tables(cohort, arguments.seed)
-    trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
+    trials = with_trial_names(trials)
     measured, excluded = [], []
     for participant in participants["participant"]:
         own = trials[trials["participant"] == participant]

@@ -10,7 +10,7 @@ from project import Project
 from swaystride.configuration import from_mapping, load_yaml
 from swaystride.simulate.feedback_cohort import design_rows, design_tables
 from swaystride.simulate.feedback_parameters import cohort_from_config
-from swaystride.studies.feedback.design import model_variables
+from swaystride.studies.feedback.design import model_variables, with_trial_names
 from swaystride.studies.feedback.plan import ModelPlan
 
 
@@ -35,7 +35,7 @@ def cohort(parameters):
 def tables(cohort):
     """Participants and trials of the published design."""
     participants, trials = design_tables(cohort, seed=99)
-    trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
+    trials = with_trial_names(trials)
     return participants, trials
 
 

@@ -97,8 +97,23 @@ def read_design(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
             found=str(trials.loc[row, "feedback_shown"]),
         )
     _check_session_structure(participants, trials, trials_file)
-    trials["trial"] = [f"trial_{number:02d}" for number in trials["session_trial"]]
-    return participants, trials
+    return participants, with_trial_names(trials)
+
+
+def with_trial_names(trials: pd.DataFrame) -> pd.DataFrame:
+    """Add the column ``trial``, the name of each recording within its participant.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        With ``session_trial``.
+
+    Examples
+    --------
+    >>> with_trial_names(pd.DataFrame({"session_trial": [3]}))["trial"].tolist()
+    ['trial_03']
+    """
+    return trials.assign(trial=[f"trial_{number:02d}" for number in trials["session_trial"]])
 
 
 def _check_session_structure(participants: pd.DataFrame, trials: pd.DataFrame, file: Path) -> None:

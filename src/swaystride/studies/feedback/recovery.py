@@ -63,7 +63,7 @@ def recovery_table(
         ``variant``, ``quantity``, ``truth``, ``mean``, ``bias``, ``empirical_sd``, ``model_se``,
         ``coverage``, ``n_cohorts``, then ``bias_in_se`` and ``attainable``.
     """
-    estimates = pd.concat(list(cohorts), keys=None, ignore_index=True)
+    estimates = pd.concat(list(cohorts), ignore_index=True)
     merged = estimates.merge(truth[[*KEYS, "truth"]], on=KEYS, validate="many_to_one")
     merged["covered"] = merged["truth"].between(merged["ci_low"], merged["ci_high"])
     grouped = merged.groupby(KEYS, sort=False)
