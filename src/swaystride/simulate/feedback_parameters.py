@@ -16,6 +16,7 @@ from swaystride.simulate.feedback_truth import (
 from swaystride.simulate.inertial_sensor import SENSOR_MODELS, SensorModel
 from swaystride.simulate.standing_model import StandingModel, TrialSettings
 from swaystride.simulate.standing_response import FEATURES
+from swaystride.simulate.worn_sensor import RadioLoss, SensorPlacement
 
 
 @dataclass(frozen=True)
@@ -66,56 +67,6 @@ class FeedbackProtocol:
     trials_per_set: int
     male_height_shift_sd: float
     height_mass_correlation: float
-
-
-@dataclass(frozen=True)
-class SensorPlacement:
-    """How the lumbar sensor sits on the body.
-
-    Parameters
-    ----------
-    pendulum_height_ratio, sensor_height_ratio : float
-        Height of the centre of mass and of the sensor above the ankle, over stature.
-    sensor_behind_m : float
-        Distance of the sensor behind the body's axis.
-    tilt_sd_deg, heading_sd_deg : float
-        Standard deviations of the mounting rotation, about each horizontal axis and about the
-        vertical.
-    """
-
-    pendulum_height_ratio: float
-    sensor_height_ratio: float
-    sensor_behind_m: float
-    tilt_sd_deg: float
-    heading_sd_deg: float
-
-
-@dataclass(frozen=True)
-class RadioLoss:
-    """What the radio link loses.
-
-    Parameters
-    ----------
-    n_lost_trials : int
-        Trials of the cohort whose link is lost: the file ends early or has a long hole.
-    hole_share : float
-        Probability that it is a hole.
-    hole_s : tuple of float
-        Shortest and longest hole.
-    end_fraction : tuple of float
-        Smallest and largest part of the trial that a file which ends early holds.
-    few_packets_share : float
-        Probability that any other trial loses one to `few_packets` single packets.
-    few_packets : int
-        See there.
-    """
-
-    n_lost_trials: int
-    hole_share: float
-    hole_s: tuple[float, float]
-    end_fraction: tuple[float, float]
-    few_packets_share: float
-    few_packets: int
 
 
 @dataclass(frozen=True)

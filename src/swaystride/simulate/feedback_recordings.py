@@ -7,25 +7,19 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from swaystride.io.xsens_txt_writer import write_xsens_txt
 from swaystride.simulate.feedback_cohort import design_rows
-from swaystride.simulate.feedback_parameters import FeedbackCohort, RadioLoss
+from swaystride.simulate.feedback_parameters import FeedbackCohort
 from swaystride.simulate.feedback_population import SIX_FEATURES, TrialTruth, draw_trials
-from swaystride.simulate.inertial_sensor import SensorUnit, draw_unit, measure, trunk_signals
-from swaystride.simulate.sampling import decimation_factor, filter_reach
+from swaystride.simulate.inertial_sensor import draw_unit
 from swaystride.simulate.seeds import generator
-from swaystride.simulate.standing_body import (
-    StandingMotion,
-    StandingParameters,
-    lean_angles_deg,
-    simulate_standing,
+from swaystride.simulate.standing_body import StandingParameters
+from swaystride.simulate.standing_recordings import (
+    standing_motion,
+    true_measures,
+    write_standing_recording,
 )
-from swaystride.simulate.standing_model import TrialSettings
 from swaystride.simulate.standing_response import FEATURES
-
-Array = NDArray[np.float64]
 
 _STUDY: Final = "feedback"
 
@@ -92,6 +86,7 @@ def write_participant(
         true angles (``true_*``, deg, deg/s, deg²), and what the radio lost.
     """
     folder, truth_file = Path(folder), Path(truth_file)
+    trial = cohort.population.trial
     own = trials[trials["participant"] == participant]
     is_person = participants["participant"] == participant
     height_m, mass_kg = participants.loc[is_person, ["height_m", "mass_kg"]].to_numpy()[0].tolist()
@@ -109,14 +104,17 @@ def write_participant(
     for i, (row, number, file) in enumerate(labels):
         rng = generator(seed, _STUDY, participant, f"trial {number:02d}")
         body = _body(truth, i, cohort, mass_kg=mass_kg, height_m=height_m, rng=rng)
-        motion = _motion(body, cohort.population.trial, rng)
-        (folder / file).parent.mkdir(parents=True, exist_ok=True)
-        link = _write_recording(
+        motion = standing_motion(body, trial, rng)
+        measures = true_measures(motion, trial)
+        link = write_standing_recording(
             folder / file,
             motion,
             height_m=height_m,
+            placement=cohort.placement,
+            sensor=cohort.sensor,
             unit=unit,
-            cohort=cohort,
+            trial=trial,
+            radio=cohort.radio,
             link_lost=row in lost,
             rng=rng,
         )
@@ -126,7 +124,7 @@ def write_participant(
                 "session_trial": number,
                 **_wanted(truth, i),
                 **_physical(body, truth, i),
-                **_true_features(motion, cohort.population.trial),
+                **{f"true_{name}": measures[name] for name in SIX_FEATURES},
                 **link,
             }
         )
@@ -153,98 +151,8 @@ def _body(
         activity=float(truth.inputs.activity[i]),
         coupling=standing.draw_coupling(rng),
         mass_kg=mass_kg,
-        pendulum_height_m=cohort.placement.pendulum_height_ratio * height_m,
+        pendulum_height_m=cohort.placement.pendulum_height_m(height_m),
     )
-
-
-def _motion(
-    body: StandingParameters, trial: TrialSettings, rng: np.random.Generator
-) -> StandingMotion:
-    """The trial at the rate of simulation, with what the anti-alias filter needs on both sides."""
-    factor = decimation_factor(trial.simulation_rate_hz, trial.rate_hz)
-    reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
-    return simulate_standing(
-        body,
-        n_samples=(trial.n_samples - 1) * factor + 1 + 2 * reach,
-        rate_hz=trial.simulation_rate_hz,
-        warm_up_s=trial.warm_up_s,
-        rng=rng,
-    )
-
-
-def _true_features(motion: StandingMotion, trial: TrialSettings) -> dict[str, float]:
-    """Sway measures of the true angles at the sampling instants of the sensor."""
-    factor = decimation_factor(trial.simulation_rate_hz, trial.rate_hz)
-    reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
-    ap, ml = lean_angles_deg(
-        motion.angle_rad[:, reach : motion.angle_rad.shape[1] - reach : factor]
-    )
-    measures = trial.true_measures(ap, ml)
-    return {f"true_{name}": measures[name] for name in SIX_FEATURES}
-
-
-def _write_recording(
-    path: Path,
-    motion: StandingMotion,
-    *,
-    height_m: float,
-    unit: SensorUnit,
-    cohort: FeedbackCohort,
-    link_lost: bool,
-    rng: np.random.Generator,
-) -> dict[str, object]:
-    """Write what the sensor and its radio make of a trial; what was lost."""
-    trial, placement = cohort.population.trial, cohort.placement
-    position = (-placement.sensor_behind_m, 0.0, placement.sensor_height_ratio * height_m)
-    acc_ideal, gyr_ideal = trunk_signals(motion, position)
-    acc, gyr = measure(
-        cohort.sensor,
-        unit,
-        acc_m_s2=acc_ideal,
-        gyr_rad_s=gyr_ideal,
-        rate_hz=trial.simulation_rate_hz,
-        output_rate_hz=trial.rate_hz,
-        rng=rng,
-    )
-    kind, lost = _radio(acc.shape[1], trial.rate_hz, cohort.radio, link_lost=link_lost, rng=rng)
-    n_written = int(np.flatnonzero(~lost)[-1]) + 1
-    write_xsens_txt(
-        path,
-        acc[:, :n_written],
-        gyr[:, :n_written],
-        rate_hz=trial.rate_hz,
-        first_packet=int(rng.integers(2**16)),
-        lost=lost[:n_written],
-        comments=("simulated by swaystride, not a measurement",),
-    )
-    return {"radio": kind, "n_lost_packets": int(lost.sum())}
-
-
-def _radio(
-    n_samples: int,
-    rate_hz: float,
-    radio: RadioLoss,
-    *,
-    link_lost: bool,
-    rng: np.random.Generator,
-) -> tuple[str, NDArray[np.bool_]]:
-    """What happened to the radio link, and which packets are lost."""
-    lost = np.zeros(n_samples, dtype=bool)
-    if link_lost and rng.random() < radio.hole_share:
-        length = round(rng.uniform(*radio.hole_s) * rate_hz)
-        start = int(rng.integers(1, n_samples - length))
-        lost[start : start + length] = True
-        return "hole", lost
-    if link_lost:
-        lost[round(rng.uniform(*radio.end_fraction) * n_samples) :] = True
-        return "ends early", lost
-    if rng.random() < radio.few_packets_share:
-        n_lost = int(rng.integers(1, radio.few_packets + 1))
-        # Single packets: neither the first nor the last, and no two in a row.
-        slots = rng.choice(np.arange(1, n_samples - 1, 2), size=n_lost, replace=False)
-        lost[slots] = True
-        return "few packets", lost
-    return "complete", lost
 
 
 def _wanted(truth: TrialTruth, i: int) -> dict[str, float]:

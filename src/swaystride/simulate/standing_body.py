@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swaystride.errors import ConfigurationError
+from swaystride.simulate._falling_kernel import integrate_falling_pendulums
 from swaystride.simulate._standing_kernel import integrate_pendulums
+from swaystride.simulate.loss_of_balance import LossOfBalance
 from swaystride.units import GRAVITY_M_S2, RAD_PER_DEG
 
 Array = NDArray[np.float64]
@@ -41,6 +43,9 @@ class StandingParameters:
         deviation over a period, and its period.
     breathing_deg, breathing_hz : float
         Amplitude and frequency of the trunk's movement with the breath, anterior-posterior.
+    weight_shift_ap_deg, weight_shift_ml_deg : float
+        Standard deviation of a further slow lean in each direction, with the period and phase of
+        the drift: somebody who shifts their weight in the course of a trial.
     """
 
     mass_kg: float
@@ -57,6 +62,8 @@ class StandingParameters:
     lean_drift_period_s: float
     breathing_deg: float
     breathing_hz: float
+    weight_shift_ap_deg: float = 0.0
+    weight_shift_ml_deg: float = 0.0
 
     @property
     def gravity_torque_nm(self) -> float:
@@ -75,12 +82,15 @@ class StandingMotion:
     angle_rad, velocity_rad_s, acceleration_rad_s2 : ndarray, shape (2, n_samples)
         Row 0 is pitch (forward positive), row 1 roll (to the right positive), with their time
         derivatives. The orientation is ``r_world_from_trunk = R_y(pitch) R_x(roll)``.
+    loss_times_s : tuple of float
+        When balance was lost, counted from the first sample.
     """
 
     rate_hz: float
     angle_rad: Array
     velocity_rad_s: Array
     acceleration_rad_s2: Array
+    loss_times_s: tuple[float, ...] = ()
 
 
 def simulate_standing(
@@ -91,6 +101,7 @@ def simulate_standing(
     warm_up_s: float,
     rng: np.random.Generator,
     start_rad: ArrayLike = (0.0, 0.0),
+    loss_of_balance: LossOfBalance | None = None,
 ) -> StandingMotion:
     """Simulate quiet standing.
 
@@ -113,6 +124,10 @@ def simulate_standing(
         Source of the noise torques and of the phases of drift and breathing.
     start_rad : array_like, shape (2,)
         Pitch and roll at the start of the warm-up, at rest.
+    loss_of_balance : LossOfBalance, optional
+        What happens beyond the limit of balance; by default the control has no limit. A motion
+        that never crosses it is the same with and without. A fall of the warm-up may reach into
+        the returned window; its time is not returned.
 
     Returns
     -------
@@ -137,13 +152,21 @@ def simulate_standing(
     True
     """
     n_warm_up = round(warm_up_s * rate_hz)
-    angle, rate = pendulum_paths(
-        parameters,
-        n_steps=n_warm_up + n_samples,
-        rate_hz=rate_hz,
-        rng=rng,
-        start_rad=start_rad,
-    )
+    n_steps = n_warm_up + n_samples
+    if loss_of_balance is None:
+        angle, rate = pendulum_paths(
+            parameters, n_steps=n_steps, rate_hz=rate_hz, rng=rng, start_rad=start_rad
+        )
+        losses = np.array([], dtype=np.int64)
+    else:
+        angle, rate, losses = falling_paths(
+            parameters,
+            loss_of_balance,
+            n_steps=n_steps,
+            rate_hz=rate_hz,
+            rng=rng,
+            start_rad=start_rad,
+        )
     kept, following = angle[:, n_warm_up:-1], rate[:, n_warm_up:]
     slow = slow_movement(
         parameters, np.arange(n_samples) / rate_hz, rng.uniform(0.0, 2.0 * np.pi, size=3)
@@ -153,6 +176,7 @@ def simulate_standing(
         angle_rad=kept + slow[0],
         velocity_rad_s=(following[:, :-1] + following[:, 1:]) / 2.0 + slow[1],
         acceleration_rad_s2=np.diff(following, axis=1) * rate_hz + slow[2],
+        loss_times_s=tuple(((losses[losses >= n_warm_up] - n_warm_up) / rate_hz).tolist()),
     )
 
 
@@ -189,7 +213,64 @@ def pendulum_paths(
     ConfigurationError
         If the stiffness does not carry the body or the coupling is not a correlation.
     """
-    p = parameters
+    angle, rate = integrate_pendulums(
+        *_kernel_arguments(parameters, n_steps, rate_hz, rng, start_rad)
+    )
+    return angle, rate
+
+
+def falling_paths(
+    parameters: StandingParameters,
+    loss_of_balance: LossOfBalance,
+    *,
+    n_steps: int,
+    rate_hz: float,
+    rng: np.random.Generator,
+    start_rad: ArrayLike = (0.0, 0.0),
+) -> tuple[Array, Array, NDArray[np.int64]]:
+    """As :func:`pendulum_paths`, with losses of balance.
+
+    The reaction times come from a child of `rng`, which takes nothing from its own stream: the
+    paths are those of :func:`pendulum_paths` up to the first loss.
+
+    Parameters
+    ----------
+    parameters, n_steps, rate_hz, rng, start_rad
+        See :func:`pendulum_paths`.
+    loss_of_balance : LossOfBalance
+        What happens beyond the limit of balance.
+
+    Returns
+    -------
+    angle_rad, rate_rad_s : ndarray, shape (2, n_steps + 1)
+        See :func:`pendulum_paths`.
+    loss_steps : ndarray of int, shape (n_losses,)
+        Index of the first angle beyond the threshold, for each loss.
+
+    Raises
+    ------
+    ConfigurationError
+        See :func:`pendulum_paths`.
+    """
+    loss = loss_of_balance
+    angle, rate, loss_steps = integrate_falling_pendulums(
+        *_kernel_arguments(parameters, n_steps, rate_hz, rng, start_rad),
+        loss.threshold_rad,
+        loss.largest_rad,
+        loss.draw_reaction_steps(n_steps, rate_hz, rng.spawn(1)[0]),
+        loss.catch_steps(rate_hz),
+    )
+    return angle, rate, loss_steps
+
+
+def _kernel_arguments(
+    p: StandingParameters,
+    n_steps: int,
+    rate_hz: float,
+    rng: np.random.Generator,
+    start_rad: ArrayLike,
+) -> tuple[Array, Array, float, float, float, float, int, float, Array]:
+    """What both kernels take: noise, body, control, step and start."""
     if not p.stiffness_ratio > 1.0:
         raise ConfigurationError(
             "the body falls", expected="stiffness_ratio > 1", found=f"{p.stiffness_ratio:g}"
@@ -205,7 +286,7 @@ def pendulum_paths(
         normals[1] *= np.sqrt(1.0 - p.noise_coupling**2)
         normals[1] += p.noise_coupling * normals[0]
     start = np.stack([np.asarray(start_rad, dtype=np.float64), np.zeros(2)], axis=1)
-    angle, rate = integrate_pendulums(
+    return (
         normals,
         np.array([p.noise_ap_nm, p.noise_ml_nm]) / p.gravity_torque_nm,
         float(np.exp(-1.0 / (rate_hz * p.noise_time_s))),
@@ -216,7 +297,6 @@ def pendulum_paths(
         1.0 / rate_hz,
         start,
     )
-    return angle, rate
 
 
 def slow_movement(parameters: StandingParameters, time_s: Array, phases_rad: ArrayLike) -> Array:
@@ -239,9 +319,9 @@ def slow_movement(parameters: StandingParameters, time_s: Array, phases_rad: Arr
     p = parameters
     phases = np.asarray(phases_rad, dtype=np.float64)[..., None]
     drift_rate = 2.0 * np.pi / p.lean_drift_period_s
-    drift = _harmonic(
-        np.sqrt(2.0) * p.lean_drift_deg * RAD_PER_DEG, drift_rate, time_s, phases[..., :2, :]
-    )
+    shift_deg = np.array([[p.weight_shift_ap_deg], [p.weight_shift_ml_deg]])
+    lean_deg = np.hypot(p.lean_drift_deg, shift_deg)
+    drift = _harmonic(np.sqrt(2.0) * lean_deg * RAD_PER_DEG, drift_rate, time_s, phases[..., :2, :])
     breath_rate = 2.0 * np.pi * p.breathing_hz
     drift[..., 0, :] += _harmonic(
         p.breathing_deg * RAD_PER_DEG, breath_rate, time_s, phases[..., 2, :]
@@ -249,7 +329,9 @@ def slow_movement(parameters: StandingParameters, time_s: Array, phases_rad: Arr
     return drift
 
 
-def _harmonic(amplitude: float, rate_rad_s: float, time_s: Array, phase_rad: Array) -> Array:
+def _harmonic(
+    amplitude: float | Array, rate_rad_s: float, time_s: Array, phase_rad: Array
+) -> Array:
     """A sinusoid and its two derivatives, stacked on a new first axis."""
     sine = amplitude * np.sin(rate_rad_s * time_s + phase_rad)
     cosine = amplitude * np.cos(rate_rad_s * time_s + phase_rad)

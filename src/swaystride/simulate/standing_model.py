@@ -71,6 +71,7 @@ class StandingModel:
         coupling: float,
         mass_kg: float,
         pendulum_height_m: float,
+        weight_shift_deg: tuple[float, float] = (0.0, 0.0),
     ) -> StandingParameters:
         """Physical parameters of one trial.
 
@@ -84,6 +85,9 @@ class StandingModel:
             Correlation of the noise torques.
         mass_kg, pendulum_height_m : float
             The person.
+        weight_shift_deg : tuple of float
+            Slow further lean, AP and ML, see
+            :class:`~swaystride.simulate.standing_body.StandingParameters`; by default none.
 
         Returns
         -------
@@ -112,6 +116,8 @@ class StandingModel:
             lean_drift_period_s=self.lean_drift_period_s,
             breathing_deg=self.breathing_deg,
             breathing_hz=self.breathing_hz,
+            weight_shift_ap_deg=weight_shift_deg[0],
+            weight_shift_ml_deg=weight_shift_deg[1],
         )
 
 

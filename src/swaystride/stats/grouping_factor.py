@@ -65,8 +65,9 @@ class GroupingFactor:
 
     def is_nested_in(self, other: GroupingFactor) -> bool:
         """Whether every level lies within a single level of the other factor."""
-        pairs = self.codes * other.n_levels + other.codes
-        return len(np.unique(pairs)) == self.n_levels
+        of_level = np.empty(self.n_levels, dtype=np.intp)
+        of_level[self.codes] = other.codes
+        return bool((of_level[self.codes] == other.codes).all())
 
 
 def grouping_factor(frame: pd.DataFrame, name: str) -> GroupingFactor:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from swaystride.errors import ModelError
-from swaystride.stats.crossed_factors import CrossedStructure
+from swaystride.stats.crossed_factors import CrossedResponse, CrossedStructure
 from swaystride.stats.grouping_factor import FloatArray
 from swaystride.stats.mixed_design import MixedDesign
 from swaystride.stats.mixed_optimiser import Minimum, minimise_over_ratios
@@ -16,8 +16,8 @@ from swaystride.stats.one_factor import OneFactorResponse, OneFactorStructure
 from swaystride.stats.profiled_deviance import (
     BoundResponse,
     Derivatives,
-    RatioStructure,
     profiled,
+    profiled_value,
 )
 
 # Above this number of levels the eigenvectors of the closed form cost more than they save.
@@ -169,17 +169,17 @@ def fit_at(
     -------
     DesignFit
     """
-    parts = bound.parts(gamma, reml=reml)
+    logdet, s = bound.value(gamma, reml=reml)
     solution = bound.solution(gamma)
     nu = design.n - (design.p if reml else 0)
     beta: FloatArray = np.linalg.solve(design.R, design.Q.T @ y + solution.shift)
-    deviance = profiled(parts, nu)[0] + (design.log_det_xtx if reml else 0.0)
+    deviance = profiled_value(logdet, s, nu) + (design.log_det_xtx if reml else 0.0)
     return DesignFit(
         design=design,
         response=y,
         reml=reml,
         gamma=gamma,
-        sigma2=parts.s / nu,
+        sigma2=s / nu,
         loglik=-0.5 * deviance,
         beta=beta,
         precision=solution.precision,
@@ -190,7 +190,7 @@ def fit_at(
     )
 
 
-def structure_of(design: MixedDesign) -> RatioStructure:
+def structure_of(design: MixedDesign) -> OneFactorStructure | CrossedStructure:
     """What is computed once per design; kept with the design.
 
     Parameters
@@ -199,10 +199,10 @@ def structure_of(design: MixedDesign) -> RatioStructure:
 
     Returns
     -------
-    RatioStructure
+    OneFactorStructure or CrossedStructure
         A closed form for a single grouping factor, the block form otherwise.
     """
-    kept: RatioStructure | None = design.__dict__.get("_structure")
+    kept: OneFactorStructure | CrossedStructure | None = design.__dict__.get("_structure")
     if kept is None:
         single = len(design.factors) == 1 and design.factors[0].n_levels <= _MAX_SPECTRUM
         kept = OneFactorStructure(design) if single else CrossedStructure(design)
@@ -254,7 +254,11 @@ def check_outcome(y: FloatArray, residual: FloatArray, bound: BoundResponse) -> 
 
 
 def _best_ratios(
-    design: MixedDesign, bound: BoundResponse, start: FloatArray | None, *, reml: bool
+    design: MixedDesign,
+    bound: OneFactorResponse | CrossedResponse,
+    start: FloatArray | None,
+    *,
+    reml: bool,
 ) -> Minimum:
     """Closed-form search for one factor, projected Newton for several."""
     nu = design.n - (design.p if reml else 0)
@@ -269,19 +273,35 @@ def _best_ratios(
             many.iterations,
         )
     size = mean_group_sizes(design)
-
-    def objective(gamma: FloatArray) -> Derivatives:
-        return profiled(bound.parts(gamma, reml=reml), nu)
-
+    objective = _CrossedDeviance(bound, nu, reml=reml)
     if start is not None:
-        return minimise_over_ratios(objective, size, np.maximum(start, 0.1 / size))
+        start = np.maximum(start, 0.1 / size)
+        bound.structure.keep(start)
+        return minimise_over_ratios(objective, size, start)
     first = minimise_over_ratios(objective, size, 1.0 / size)
     if first.converged and (first.gamma > 0.0).all():
         return first
     # The boundary can hold a second, lower hill: approach it from the other side as well.
-    second = minimise_over_ratios(objective, size, np.full(len(size), _LARGE))
+    known = first if first.converged else None
+    second = minimise_over_ratios(objective, size, np.full(len(size), _LARGE), known)
     better = second.value < first.value - 1e-9 * abs(first.value)
     return second if second.converged and (better or not first.converged) else first
+
+
+class _CrossedDeviance:
+    """Profiled deviance of one response with several grouping factors."""
+
+    def __init__(self, bound: CrossedResponse, nu: int, *, reml: bool) -> None:
+        self.bound, self.nu, self.reml = bound, nu, reml
+
+    def sketch(self, gamma: FloatArray) -> tuple[Derivatives, FloatArray]:
+        """Without the Hessian of the log-determinant; the gradient of the latter."""
+        parts = self.bound.sketch(gamma, reml=self.reml)
+        return profiled(parts, self.nu), parts.logdet_gradient
+
+    def costly_hessian(self, gamma: FloatArray) -> FloatArray:
+        """Hessian of the log-determinant."""
+        return self.bound.structure.at(gamma).logdet_hessian(reml=self.reml)
 
 
 def mean_group_sizes(design: MixedDesign) -> FloatArray:

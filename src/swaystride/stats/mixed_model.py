@@ -283,13 +283,15 @@ class MixedModelFit:
         """
         return simulate_responses(self.estimates, n, seed)
 
-    def refit_many(self, responses: npt.ArrayLike) -> Refits:
+    def refit_many(self, responses: npt.ArrayLike, *, processes: int = 1) -> Refits:
         """Fit the same model to many responses.
 
         Parameters
         ----------
         responses : array, shape (N, n_observations)
             One response per row, as :meth:`simulate` returns them.
+        processes : int, optional
+            Processes that share the work if there are several grouping factors.
 
         Returns
         -------
@@ -297,4 +299,6 @@ class MixedModelFit:
             Estimates, standard errors, variance components, log-likelihoods, convergence.
         """
         fit, values = self.estimates, np.asarray(responses, dtype=float)
-        return refit_responses(fit.design, values, reml=self.reml, start=fit.gamma)
+        return refit_responses(
+            fit.design, values, reml=self.reml, start=fit.gamma, processes=processes
+        )

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 import pandas as pd
@@ -73,7 +76,12 @@ def simulate_responses(fit: DesignFit, n: int, seed: Seed) -> FloatArray:
 
 
 def refit_responses(
-    design: MixedDesign, responses: FloatArray, *, reml: bool, start: FloatArray | None = None
+    design: MixedDesign,
+    responses: FloatArray,
+    *,
+    reml: bool,
+    start: FloatArray | None = None,
+    processes: int = 1,
 ) -> Refits:
     """Fit the same design to many responses.
 
@@ -88,6 +96,9 @@ def refit_responses(
     reml : bool
     start : array, shape (k,), optional
         Variance ratios near which the answers are expected, to save steps with several factors.
+    processes : int, optional
+        Processes that share the responses of a design with several factors. Every response is
+        fitted alone, so that the result does not depend on their number.
 
     Returns
     -------
@@ -124,7 +135,7 @@ def refit_responses(
             for start in range(0, len(responses), _CHUNK)
         ] or [_one_factor_empty(design)]
     else:
-        chunks = [_one_by_one(design, responses, start, reml=reml)]
+        chunks = _in_processes(design, responses, start, reml=reml, processes=processes)
     estimates, se, variances, loglik, converged = (
         np.concatenate(parts) for parts in zip(*chunks, strict=True)
     )
@@ -173,6 +184,24 @@ def _one_factor(
         -0.5 * (deviance + (design.log_det_xtx if reml else 0.0)),
         best.converged.astype(float),
     )
+
+
+def _in_processes(
+    design: MixedDesign,
+    responses: FloatArray,
+    start: FloatArray | None,
+    *,
+    reml: bool,
+    processes: int,
+) -> list[_Arrays]:
+    """Share the responses among processes; one process stays in this one."""
+    if processes <= 1 or len(responses) < 2 * processes:
+        return [_one_by_one(design, responses, start, reml=reml)]
+    parts = np.array_split(responses, processes)
+    fit_part = partial(_one_by_one, design, start=start, reml=reml)
+    # fresh processes: a fork of one with threads of a linear algebra library may hang
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(fit_part, parts))
 
 
 def _one_by_one(

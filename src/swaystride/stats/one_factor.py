@@ -146,6 +146,10 @@ class OneFactorResponse:
             d2s[:1, None],
         )
 
+    def value(self, gamma: FloatArray, *, reml: bool) -> tuple[float, float]:
+        """Log-determinant and residual sum of squares of the first response, shape (1,)."""
+        return float(self._logdet(gamma, reml=reml)[0][0]), float(self._s(gamma)[0][0])
+
     def _logdet(
         self, gamma: FloatArray, *, reml: bool
     ) -> tuple[FloatArray, FloatArray, FloatArray]:

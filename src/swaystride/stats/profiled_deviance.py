@@ -72,20 +72,12 @@ class BoundResponse(Protocol):
         """Parts of the deviance at the variance ratios, shape (k,)."""
         ...
 
+    def value(self, gamma: FloatArray, *, reml: bool) -> tuple[float, float]:
+        """Log-determinant and generalised residual sum of squares alone."""
+        ...
+
     def solution(self, gamma: FloatArray) -> Solution:
         """Effects at the variance ratios."""
-        ...
-
-
-class RatioStructure(Protocol):
-    """What is computed once per design."""
-
-    def bind(self, residual: FloatArray) -> BoundResponse:
-        """Attach the residual of ordinary least squares, shape (n,)."""
-        ...
-
-    def precision_slopes(self, gamma: FloatArray) -> FloatArray:
-        """Derivatives of ``-Q.T @ inv(H) @ Q`` with respect to each ratio, shape (k, p, p)."""
         ...
 
 
@@ -116,10 +108,32 @@ def profiled(parts: DevianceParts, nu: int) -> Derivatives:
     14.189385
     """
     relative = parts.s_gradient / parts.s
-    value = parts.logdet + nu * (1.0 + np.log(2.0 * np.pi * parts.s / nu))
+    value = profiled_value(parts.logdet, parts.s, nu)
     gradient = parts.logdet_gradient + nu * relative
     hessian = parts.logdet_hessian + nu * (parts.s_hessian / parts.s - np.outer(relative, relative))
-    return float(value), gradient, hessian
+    return value, gradient, hessian
+
+
+def profiled_value(logdet: float, s: float, nu: int) -> float:
+    """Deviance with the residual variance profiled out, see :func:`profiled`.
+
+    Parameters
+    ----------
+    logdet, s : float
+        Log-determinant and generalised residual sum of squares.
+    nu : int
+        n for ML, n - p for REML.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> round(profiled_value(0.0, 5.0, 5), 6)
+    14.189385
+    """
+    return logdet + nu * (1.0 + float(np.log(2.0 * np.pi * s / nu)))
 
 
 def at_residual_variance(parts: DevianceParts, nu: int, sigma2: float) -> Derivatives:

@@ -62,6 +62,15 @@ class ImportedTrials:
     findings: pd.DataFrame
     exclusions: pd.DataFrame
 
+    @property
+    def summary(self) -> str:
+        """How many trials, usable and excluded, and findings."""
+        n_usable, n_excluded = len(self.recordings), len(self.exclusions)
+        return (
+            f"{n_usable + n_excluded} trials, {n_usable} usable, {n_excluded} excluded, "
+            f"{len(self.findings)} findings"
+        )
+
 
 def import_trials(
     files: Mapping[str, Path],

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
-from swaystride.recording import Recording, six_axis_signals
+from swaystride.recording import Recording, list_recordings, load_recording, six_axis_signals
 from swaystride.signals.filters import Direction, butterworth_lowpass
 from swaystride.signals.gaps import fill_short_gaps, missing_runs
 from swaystride.signals.orientation import FusionMethod, remap_axes
@@ -117,3 +119,32 @@ def measure_trial(recording: Recording, method: MeasurementMethod) -> dict[str, 
         "samples_filled": int(missing_runs(six_axis_signals(recording))["length"].sum()),
         **sway_metrics(ap_deg, ml_deg, rate_hz),
     }
+
+
+def measure_participant(participant: str, file: Path, method: MeasurementMethod) -> pd.DataFrame:
+    """Sway measures of every usable trial of one participant.
+
+    Parameters
+    ----------
+    participant : str
+        Name, written into every row.
+    file : Path
+        The participant's recordings, one trial in memory at a time.
+    method : MeasurementMethod
+        How sway is measured.
+
+    Returns
+    -------
+    DataFrame
+        ``participant``, ``trial`` (name of the recording) and :data:`TRIAL_MEASURES`, sorted by
+        trial; no rows if no trial is usable.
+    """
+    rows = [
+        {
+            "participant": participant,
+            "trial": trial,
+            **measure_trial(load_recording(file, trial), method),
+        }
+        for trial in list_recordings(file)
+    ]
+    return pd.DataFrame(rows, columns=["participant", "trial", *TRIAL_MEASURES])

@@ -1,0 +1,1 @@
+"""Balance exercise intensity: therapist ratings, self-ratings and sway (dissertation, chapter 3)."""
