@@ -1,10 +1,11 @@
 # swaystride: `make` sets up the environment and builds every table and figure.
 #
 #   make              everything at published scale     make demo       the same in under a minute
-#   make feedback     one study                         make variants   every variant of every study
+#   make feedback     one study, or make intensity      make variants   every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
 #   make dry-run      what would be done                make benchmark  time and memory of the feedback study
+#   make benchmark-models  mixed models beside other libraries (make peers installs them)
 #   make clean        remove results and generated data
 
 SHELL := bash
@@ -19,7 +20,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback variants validation benchmark recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback intensity variants validation benchmark benchmark-models peers recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -29,6 +30,9 @@ demo: setup
 
 feedback: setup
 	@$(SNAKEMAKE) -- feedback
+
+intensity: setup
+	@$(SNAKEMAKE) -- intensity
 
 variants: setup
 	@$(SNAKEMAKE) -- variants
@@ -40,6 +44,18 @@ validation: setup
 
 benchmark: setup
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python scripts/benchmark_feedback.py --cores $(CORES)
+
+benchmark-models: setup
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 python scripts/benchmark_mixed_models.py \
+		$(if $(REFERENCE),--reference "$(REFERENCE)")
+
+peers: setup .venv-peers/.complete
+
+.venv-peers/.complete: requirements-peers.txt
+	@echo "setting up .venv-peers (once)"
+	@$(BIN)/python -m venv --clear .venv-peers
+	@.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers.txt
+	@touch $@
 
 recovery: setup
 	@$(SNAKEMAKE) -- recovery

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
-from swaystride.recording import save_recordings
 from swaystride.studies.feedback.design import read_design
-from swaystride.sway.trial_import import RecordingRules, import_trials
+from swaystride.sway.participant_import import ImportFiles, import_participant
+from swaystride.sway.trial_import import RecordingRules
 
 
 def main() -> None:
@@ -23,24 +23,9 @@ def main() -> None:
         RecordingRules, arguments.parameters["recording"], place="analysis.recording"
     )
     _, trials = read_design(arguments.raw)
-    own = trials[trials["participant"] == arguments.participant].set_index("trial")
-    imported = import_trials(
-        {str(trial): Path(file) for trial, file in own["file"].items()},
-        arguments.raw,
-        rules,
-        own.loc[own["exclude"] != "", "exclude"].to_dict(),
-    )
-    save_recordings(arguments.recordings, imported.recordings)
-    for table, path in (
-        (imported.findings, arguments.findings),
-        (imported.exclusions, arguments.exclusions),
-    ):
-        table.insert(0, "participant", arguments.participant)
-        table.to_csv(path, index=False, lineterminator="\n")
-    print(
-        f"{arguments.participant}: {len(own)} trials, {len(imported.recordings)} usable, "
-        f"{len(imported.exclusions)} excluded, {len(imported.findings)} findings"
-    )
+    files = ImportFiles(arguments.recordings, arguments.findings, arguments.exclusions)
+    imported = import_participant(arguments.participant, trials, arguments.raw, rules, files)
+    print(f"{arguments.participant}: {imported.summary}")
 
 
 if __name__ == "__main__":

@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-import pandas as pd
-
 from swaystride.command_line import run_script, script_parser
 from swaystride.report.provenance import write_json
 from swaystride.studies.feedback.design import read_design
 from swaystride.studies.feedback.flow import participant_flow
+from swaystride.sway.participant_import import read_quality_tables
 
 
 def main() -> None:
@@ -20,13 +19,9 @@ def main() -> None:
     parser.add_argument("--exclusions", type=Path, required=True)
     parser.add_argument("--flow", type=Path, required=True)
     arguments = parser.parse_args()
-
-    def joined(kind: str) -> pd.DataFrame:
-        files = [arguments.parts / kind / f"{name}.csv" for name in arguments.participants]
-        tables = [pd.read_csv(file, dtype=str, keep_default_na=False) for file in files]
-        return pd.concat(tables, ignore_index=True)
-
-    findings, exclusions = joined("findings"), joined("exclusions")
+    names = arguments.participants
+    findings = read_quality_tables(arguments.parts / "findings", names)
+    exclusions = read_quality_tables(arguments.parts / "exclusions", names)
     findings.to_csv(arguments.findings, index=False, lineterminator="\n")
     exclusions.to_csv(arguments.exclusions, index=False, lineterminator="\n")
     participants, trials = read_design(arguments.raw)

@@ -1,39 +1,72 @@
 """Validate the library on one public data set: checks, table of trials, figure."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Final
+
+import pandas as pd
+from matplotlib.figure import Figure
 
 from swaystride.command_line import run_script, script_parser
 from swaystride.presentation.figure_style import figure_style, save_figure
-from swaystride.validation import lumbar_imu_standing, standing_force_plate
-from swaystride.validation.figures import figure_force_plate, figure_lumbar
-from swaystride.validation.summary import summary_frame
+from swaystride.validation import (
+    force_plate_models,
+    lumbar_imu_standing,
+    reliability_and_mixed_models,
+    standing_force_plate,
+)
+from swaystride.validation.figures import (
+    figure_force_plate,
+    figure_lumbar,
+    figure_reliability,
+)
+from swaystride.validation.summary import Check, summary_frame
+
+Validated = tuple[pd.DataFrame, list[Check], Callable[[pd.DataFrame], Figure]]
+
+
+def force_plate(folder: Path) -> Validated:
+    """Trials, checks and figure of the force-plate recordings."""
+    trials = standing_force_plate.force_plate_trials(folder)
+    table = standing_force_plate.force_plate_table(folder)
+    comparison = force_plate_models.force_plate_comparison(table)
+    checks = standing_force_plate.force_plate_checks(trials, comparison)
+    return trials, checks, figure_force_plate
+
+
+def lumbar(folder: Path) -> Validated:
+    """Trials, checks and figure of the lumbar recordings."""
+    trials = lumbar_imu_standing.lumbar_trials(folder)
+    return trials, lumbar_imu_standing.lumbar_checks(trials), figure_lumbar
+
+
+def reliability(folder: Path) -> Validated:
+    """Compared values, checks and figure of the tables of ratings."""
+    comparison = reliability_and_mixed_models.reliability_comparison(folder)
+    name = reliability_and_mixed_models.DATASET
+    checks = reliability_and_mixed_models.comparison_checks(name, comparison)
+    return comparison, checks, figure_reliability
+
+
+DATASETS: Final[dict[str, Callable[[Path], Validated]]] = {
+    standing_force_plate.DATASET: force_plate,
+    lumbar_imu_standing.DATASET: lumbar,
+    reliability_and_mixed_models.DATASET: reliability,
+}
 
 
 def main() -> None:
     """Parse paths, call the library, write the files."""
     parser = script_parser(__doc__)
-    parser.add_argument(
-        "--dataset",
-        choices=[standing_force_plate.DATASET, lumbar_imu_standing.DATASET],
-        required=True,
-    )
+    parser.add_argument("--dataset", choices=list(DATASETS), required=True)
     parser.add_argument("--real-data", type=Path, required=True)
     parser.add_argument("--checks", type=Path, required=True)
     parser.add_argument("--trials", type=Path, required=True)
     parser.add_argument("--figure", type=Path, required=True)
     arguments = parser.parse_args()
-    folder = arguments.real_data
+    trials, checks, draw = DATASETS[arguments.dataset](arguments.real_data)
     with figure_style():
-        if arguments.dataset == standing_force_plate.DATASET:
-            trials = standing_force_plate.force_plate_trials(folder)
-            table = standing_force_plate.force_plate_table(folder)
-            checks = standing_force_plate.force_plate_checks(trials, table)
-            figure = figure_force_plate(trials)
-        else:
-            trials = lumbar_imu_standing.lumbar_trials(folder)
-            checks = lumbar_imu_standing.lumbar_checks(trials)
-            figure = figure_lumbar(trials)
-        save_figure(figure, arguments.figure.with_suffix(""), simulated=False)
+        save_figure(draw(trials), arguments.figure.with_suffix(""), simulated=False)
     summary = summary_frame(checks)
     summary.to_csv(arguments.checks, index=False, float_format="%.12g", lineterminator="\n")
     trials.to_csv(arguments.trials, index=False, float_format="%.12g", lineterminator="\n")

@@ -71,7 +71,7 @@ def test_imports_name_submodules_never_lazy_packages(file):
 
 def test_the_import_graph_sees_what_python_imports():
     """The closure computed from the text holds every module that is really loaded."""
-    script = REPOSITORY / "scripts" / "feedback_metrics.py"
+    script = REPOSITORY / "scripts" / "standing_metrics.py"
     probe = (
         "import runpy, sys; runpy.run_path(sys.argv[1]); "
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('swaystride')))"

@@ -18,7 +18,11 @@ from swaystride.configuration import Tree, iter_parameters, load_yaml, plain_val
 from swaystride.errors import ConfigurationError
 
 #: Public real recordings that `make validation` uses.
-VALIDATION_DATASETS = ("standing_force_plate", "lumbar_imu_standing")
+VALIDATION_DATASETS = (
+    "standing_force_plate",
+    "lumbar_imu_standing",
+    "reliability_and_mixed_models",
+)
 
 
 class Project:

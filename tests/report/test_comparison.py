@@ -65,15 +65,25 @@ def test_the_printed_table_agrees_with_itself_in_its_own_order():
     values = [ESTIMATE, Value("p", "p")]
     shuffled = printed.sample(frac=1.0, random_state=1).drop(columns="p_is_upper_bound")
     frame = compare_numbers(printed, shuffled, keys=KEYS, values=values)
-    estimates = frame[frame["quantity"] == "estimate"]
+    estimates = frame[frame["compared"] == "estimate"]
     pd.testing.assert_frame_equal(
         estimates[KEYS].reset_index(drop=True), printed[KEYS], check_dtype=False
     )
     assert (estimates["difference_in_se"] == 0.0).all()
     assert summarise(frame).agrees == summarise(frame).compared == len(printed)
     assert summarise(frame).one_table_only == 0
-    bounds = frame.loc[frame["quantity"] == "p", "printed_is_bound"].to_numpy(bool)
+    bounds = frame.loc[frame["compared"] == "p", "printed_is_bound"].to_numpy(bool)
     np.testing.assert_array_equal(bounds, printed["p_is_upper_bound"] == 1)
+
+
+def test_a_key_may_be_called_quantity_but_not_like_a_column_of_the_comparison():
+    table = pd.DataFrame({"quantity": ["a", "b"], "value": [1.0, 2.0], "se": [0.1, 0.1]})
+    frame = compare_numbers(table, table, keys=["quantity"], values=[Value("value", 2, se="se")])
+    assert frame["quantity"].tolist() == ["a", "b"]
+    assert summarise(frame).agrees == 2
+    clash = table.rename(columns={"quantity": "reason"})
+    with pytest.raises(ConfigurationError, match="a key has the name"):
+        compare_numbers(clash, clash, keys=["reason"], values=[Value("value", 2)])
 
 
 def test_rows_of_one_table_only_are_listed():
@@ -130,7 +140,7 @@ def test_words_of_the_selection_table():
     summary = summarise(frame)
     assert (summary.agrees, summary.borderline, summary.differs) == (6 * 13 - 2, 1, 1)
     changed = frame[frame["agreement"] != "agrees"]
-    assert changed["quantity"].tolist() == ["order", "intercept"]
+    assert changed["compared"].tolist() == ["order", "intercept"]
     assert changed["agreement"].tolist() == ["differs", "borderline"]
 
 

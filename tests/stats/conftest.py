@@ -48,7 +48,7 @@ def crossed() -> Callable[..., pd.DataFrame]:
     return make
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def twin_deviance() -> Callable[..., float]:
     """Minus twice the (restricted) log-likelihood with V written out."""
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -56,3 +58,58 @@ def test_the_end_does_not_depend_on_the_start(crossed):
     for fit in fits:
         assert fit.converged
         np.testing.assert_allclose(fit.gamma, fits[0].gamma, atol=1e-9)
+
+
+class _Split:
+    """A bowl plus a curved part whose Hessian is held back; counts how often it is asked for."""
+
+    def __init__(self, target, H, weight):
+        self.bowl, self.weight, self.asked = _bowl(target, H), weight, 0
+
+    def sketch(self, gamma):
+        value, gradient, hessian = self.bowl(gamma)
+        value += float((self.weight * np.log1p(gamma)).sum() ** 2)
+        total = (self.weight * np.log1p(gamma)).sum()
+        slope = 2.0 * total * self.weight / (1.0 + gamma)
+        return (value, gradient + slope, hessian), slope
+
+    def costly_hessian(self, gamma):
+        self.asked += 1
+        each = self.weight / (1.0 + gamma)
+        total = (self.weight * np.log1p(gamma)).sum()
+        return 2.0 * np.outer(each, each) - np.diag(2.0 * total * each / (1.0 + gamma))
+
+    def whole(self, gamma):
+        (value, gradient, hessian), _ = self.sketch(gamma)
+        return value, gradient, hessian + self.costly_hessian(gamma)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_secants_lead_to_the_same_minimum_as_exact_hessians(seed):
+    rng = np.random.default_rng(seed)
+    A = rng.normal(size=(5, 5))
+    split = _Split(3.0 * rng.normal(size=5), A @ A.T + 0.5 * np.eye(5), rng.random(5))
+    size = rng.uniform(1.0, 9.0, size=5)
+    whole = minimise_over_ratios(split.whole, size, np.ones(5))
+    split.asked = 0
+    found = minimise_over_ratios(split, size, np.ones(5))
+    assert found.converged == whole.converged is True
+    assert found.value == pytest.approx(whole.value, abs=1e-10)
+    np.testing.assert_allclose(found.gamma, whole.gamma, atol=1e-8)
+    assert split.asked < found.evaluations
+
+
+def test_a_search_that_leads_to_a_known_minimum_ends_there():
+    objective = _bowl(np.array([2.0, -1.0]), np.array([[2.0, 0.3], [0.3, 1.0]]))
+    first = minimise_over_ratios(objective, np.ones(2), np.ones(2))
+    again = minimise_over_ratios(objective, np.ones(2), np.full(2, 30.0), first)
+    assert again.gamma.tolist() == first.gamma.tolist()
+    assert again.evaluations > first.evaluations
+
+
+def test_a_search_goes_past_a_known_point_that_is_no_minimum():
+    objective = _bowl(np.array([2.0]), np.eye(1))
+    false = replace(minimise_over_ratios(objective, np.ones(1), np.ones(1)), gamma=np.array([2.1]))
+    false = replace(false, value=objective(false.gamma)[0])
+    found = minimise_over_ratios(objective, np.ones(1), np.full(1, 30.0), false)
+    assert found.gamma == pytest.approx([2.0], abs=1e-9)

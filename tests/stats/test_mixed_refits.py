@@ -1,4 +1,5 @@
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.stats import t as student
 
@@ -86,3 +87,16 @@ def test_unfit_responses_are_refused(one_way):
     responses[1] = frame["who"]
     with pytest.raises(ModelError, match="response 1 is reproduced by the groups"):
         fit.refit_many(responses)
+
+
+def test_the_number_of_processes_does_not_show(crossed):
+    fit = fit_mixed_model("y ~ x + (1|p) + (1|r) + (1|p:e)", crossed())
+    responses = fit.simulate(7, seed=2)
+    alone, shared = (fit.refit_many(responses, processes=processes) for processes in (1, 2))
+    for name in ("estimates", "se", "variance_components"):
+        pd.testing.assert_frame_equal(getattr(alone, name), getattr(shared, name), check_exact=True)
+    assert alone.loglik.tolist() == shared.loglik.tolist()
+    assert alone.converged.tolist() == shared.converged.tolist()
+    responses[5] = 1.0
+    with pytest.raises(ModelError, match="response 5: the outcome is constant; found 1 in all"):
+        fit.refit_many(responses, processes=2)

@@ -2,7 +2,7 @@
 
 import pytest
 
-FIXED = {
+FEEDBACK = {
     "feedback_design": 1,
     "feedback_quality": 1,
     "feedback_observations": 1,
@@ -10,36 +10,67 @@ FIXED = {
     "feedback_table": 7,
     "feedback_truth": 1,
     "feedback_figure": 6,
-    "parameter_sections": 5,
-    "study_parameters": 1,
-    "study_page": 1,
+}
+INTENSITY = {
+    "intensity_design": 1,
+    "intensity_quality": 1,
+    "intensity_ratings": 1,
+    "intensity_sway": 1,
+    "intensity_reliability": 1,
+    "intensity_difficulty": 1,
+    "intensity_self_ratings": 1,
+    "intensity_kinematics": 1,
+    "intensity_table": 11,
+    "intensity_figure": 6,
+    "intensity_population": 1,
+    "intensity_truth": 1,
+}
+SHARED = {
+    "parameter_sections": 5 + 4,
+    "study_parameters": 2,
+    "study_page": 2,
     "cohort_page": 1,
     "provenance": 1,
     "all": 1,
 }
-PER_PARTICIPANT = ("feedback_simulate", "feedback_import", "feedback_metrics")
 
 
-@pytest.mark.parametrize(("cohort", "n"), [("synthetic", 19), ("synthetic_demo", 6)])
-def test_all_has_the_expected_jobs(sandbox, cohort, n):
+def per_participant(study, n):
+    return {f"{study}_{stage}": n for stage in ("simulate", "import", "metrics")}
+
+
+@pytest.mark.parametrize(
+    ("cohort", "n_feedback", "n_intensity"), [("synthetic", 19, 10), ("synthetic_demo", 6, 4)]
+)
+def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity):
     planned = sandbox.planned("--config", f"cohort={cohort}", "--", "all")
-    assert planned == FIXED | dict.fromkeys(PER_PARTICIPANT, n)
+    assert planned == {
+        **FEEDBACK,
+        **INTENSITY,
+        **SHARED,
+        **per_participant("feedback", n_feedback),
+        **per_participant("intensity", n_intensity),
+    }
     assert sum(planned.values()) < 300
 
 
-def test_one_study_is_built_without_the_page_of_the_cohort(sandbox):
-    planned = sandbox.planned("feedback")
+@pytest.mark.parametrize(("study", "other"), [("feedback", "intensity"), ("intensity", "feedback")])
+def test_one_study_is_built_without_the_other_and_the_page_of_the_cohort(sandbox, study, other):
+    planned = sandbox.planned(study)
     assert "cohort_page" not in planned
     assert planned["study_page"] == 1
+    assert not [rule for rule in planned if rule.startswith(other)]
 
 
 def test_variants_share_the_stages_before_their_first_own(sandbox):
     planned = sandbox.planned("variants")
-    assert planned["study_page"] == 3
+    assert planned["study_page"] == 3 + 2
     assert planned["feedback_import"] == 19
     # printed and recommended measure anew; n_coding_reset shares the measures of printed
     assert planned["feedback_metrics"] == 2 * 19
     assert planned["feedback_model"] == 3 * 6
+    assert planned["intensity_import"] == 10
+    assert planned["intensity_metrics"] == 2 * 10
 
 
 def test_one_table_can_be_asked_for_alone(sandbox):
@@ -47,6 +78,17 @@ def test_one_table_can_be_asked_for_alone(sandbox):
     planned = sandbox.planned(target)
     assert planned["feedback_table"] == 1
     assert "feedback_figure" not in planned
+
+
+def test_a_table_of_ratings_needs_no_recording(sandbox):
+    planned = sandbox.planned("results/synthetic_demo/intensity/printed/tables/table_3_2.csv")
+    assert planned == {
+        "parameter_sections": 2,
+        "intensity_design": 1,
+        "intensity_ratings": 1,
+        "intensity_difficulty": 1,
+        "intensity_table": 1,
+    }
 
 
 @pytest.mark.parametrize(

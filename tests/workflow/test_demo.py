@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pandas as pd
+import pytest
 
 DEMO = ("--config", "cohort=synthetic_demo", "--", "all")
 RESULTS = "results/synthetic_demo"
@@ -25,24 +26,52 @@ def test_tables_agree_with_the_truth_put_in(demo):
     assert truth["covered"].mean() > 0.5
 
 
+def with_truth(sandbox, study, trial_names):
+    """Measures of all trials of the demo beside their truth."""
+    folder = sandbox.root / RESULTS / study / "printed/metrics"
+    raw = sandbox.root / "data/raw/synthetic_demo" / study / "truth"
+    parts = []
+    for path in sorted(folder.glob("*.parquet")):
+        theirs = pd.read_csv(raw / f"{path.stem}.tsv", sep="\t")
+        theirs = theirs.assign(recording=trial_names(theirs)).drop(
+            columns=["participant", "trial"], errors="ignore"
+        )
+        ours = pd.read_parquet(path).rename(columns={"trial": "recording"})
+        parts.append(ours.merge(theirs, on="recording", suffixes=("", "_true")))
+    return pd.concat(parts, ignore_index=True)
+
+
 def test_measures_agree_with_the_true_sway_of_every_trial(demo):
     """Through files, sensor errors, lost packets, fusion and filter: within a few percent."""
-    folder = demo.root / RESULTS / "feedback/printed/metrics"
-    raw = demo.root / "data/raw/synthetic_demo/feedback/truth"
-    errors = []
-    for path in sorted(folder.glob("*.parquet")):
-        ours = pd.read_parquet(path)
-        theirs = pd.read_csv(raw / f"{path.stem}.tsv", sep="\t")
-        theirs["trial"] = [f"trial_{number:02d}" for number in theirs["session_trial"]]
-        both = ours.merge(theirs, on="trial")
-        errors.append(
-            {n: np.log(both[n] / both[f"true_{n}"]) for n in ("ap_rms", "ml_rms", "phi_mv")}
-        )
+    both = with_truth(
+        demo, "feedback", lambda truth: [f"trial_{number:02d}" for number in truth["session_trial"]]
+    )
+    assert len(both) > 200
     for name in ("ap_rms", "ml_rms", "phi_mv"):
-        error = np.concatenate([row[name] for row in errors])
-        assert error.size > 200
+        error = np.log(both[name] / both[f"true_{name}"])
         assert abs(error.mean()) < 0.02, name
         assert error.std() < 0.06, name
+
+
+def test_measures_agree_with_the_true_sway_of_falls_and_short_trials(demo):
+    """The intensity study keeps every trial, whether or not balance was lost in it."""
+    both = with_truth(
+        demo,
+        "intensity",
+        lambda truth: [
+            f"exercise_{order:02d}_trial_{trial}"
+            for order, trial in zip(truth["exercise_order"], truth["trial"], strict=True)
+        ],
+    )
+    assert len(both) == 4 * 10 * 3
+    assert (both["n_losses_of_balance"] > 0).any()
+    assert both["duration_s"].to_numpy() == pytest.approx(
+        both["duration_s_true"].to_numpy(), abs=0.02
+    )
+    for name in ("ap_rms", "ml_rms", "phi_mv"):
+        error = np.log(both[name] / both[f"true_{name}"])
+        assert abs(error.median()) < 0.03, name
+        assert error.abs().quantile(0.9) < 0.25, name
 
 
 def test_the_exclusion_is_the_trial_whose_link_was_lost(demo):
@@ -61,7 +90,7 @@ def test_every_output_says_that_it_is_simulated(demo):
     folder = demo.root / RESULTS
     assert "Simulated cohort: not measurements." in (folder / "report.html").read_text()
     for suffix in ("csv", "md", "tex", "html"):
-        for path in (folder / "feedback/printed/tables").glob(f"*.{suffix}"):
+        for path in folder.glob(f"*/printed/tables/*.{suffix}"):
             assert "simulated" in path.read_text(encoding="utf-8").lower(), path.name
 
 
@@ -73,7 +102,7 @@ def test_provenance_lists_every_result_with_its_hash(demo):
     shown = [name for name in on_disk if "/tables/" in name or "/figures/" in name]
     assert len(shown) > 40
     assert set(shown) <= set(listed)
-    assert sum(name.endswith(".nc") for name in listed) == 6
+    assert sum(name.endswith(".nc") for name in listed) == 6 + 4
     assert any(row["path"].endswith("P01_01.txt") for row in provenance["inputs"])
     assert provenance["seed"] == 1
 
@@ -106,13 +135,21 @@ def test_an_edit_reruns_the_dependents_only(demo):
     assert claims["feedback_table"] == 7
     assert not {"feedback_simulate", "feedback_import", "feedback_metrics"} & set(claims)
     assert "feedback_model" not in claims
+    assert not [rule for rule in claims if rule.startswith("intensity")]
+
+    design = edited(demo, "src/swaystride/studies/intensity/design.py")
+    assert design["intensity_import"] == 4
+    assert "intensity_simulate" not in design
+    assert not [rule for rule in design if rule.startswith("feedback")]
 
     fusion = edited(demo, "src/swaystride/signals/orientation.py")
     assert fusion["feedback_metrics"] == 6
-    assert not {"feedback_simulate", "feedback_import"} & set(fusion)
+    assert fusion["intensity_metrics"] == 4
+    assert not {"feedback_simulate", "feedback_import", "intensity_import"} & set(fusion)
 
     readers = edited(demo, "src/swaystride/io/reading.py")
     assert readers["feedback_import"] == 6
+    assert readers["intensity_import"] == 4
     assert "feedback_simulate" not in readers
 
     assert edited(demo, "src/swaystride/validation/figures.py") == {}

@@ -18,6 +18,7 @@ def lab(demo, new_checkout):
     path = sandbox.root / "config/config.yaml"
     text = path.read_text(encoding="utf-8").replace("cohort: synthetic\n", "cohort: my_lab\n")
     text = text.replace("  # my_lab:", "  my_lab:")
+    text = text.replace("studies: [feedback, intensity]", "studies: [feedback]")
     path.write_text(text, encoding="utf-8")
     return sandbox
 

@@ -106,7 +106,7 @@ rule feedback_quality:
 
 rule feedback_metrics:
     input:
-        code("scripts/feedback_metrics.py"),
+        code("scripts/standing_metrics.py"),
         recordings="results/{cohort}/feedback/recordings/{participant}.nc",
         parameters=feedback.parameters("analysis.measurement"),
     output:
@@ -116,7 +116,7 @@ rule feedback_metrics:
     conda:
         "../envs/swaystride.yaml"
     shell:
-        "python scripts/feedback_metrics.py --participant {wildcards.participant:q}"
+        "python scripts/standing_metrics.py --participant {wildcards.participant:q}"
         " --recordings {input.recordings:q} --parameters {input.parameters:q} --output {output:q}"
         " 2>&1 | tee {log:q}"
 

@@ -91,12 +91,12 @@ def require_used(frame: pd.DataFrame, rules: Sequence[Unattainable]) -> None:
 
     Examples
     --------
-    >>> require_used(pd.DataFrame({"feature": ["phi_rms"], "quantity": ["p"]}), [])
+    >>> require_used(pd.DataFrame({"feature": ["phi_rms"], "compared": ["p"]}), [])
     """
     rows = frame.astype(object).to_dict("records")
     for rule in rules:
         if not any(
-            _matches(rule, {str(k): v for k, v in row.items()}, row["quantity"]) for row in rows
+            _matches(rule, {str(k): v for k, v in row.items()}, row["compared"]) for row in rows
         ):
             raise ConfigurationError(
                 "rule for unattainable rows matches no row",

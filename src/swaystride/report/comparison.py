@@ -33,7 +33,7 @@ BORDERLINE_WITHIN_SE = 3.0
 _ROUNDING = 1e-9  # so that (0.14 - 0.10)/0.02 is 2 and not a little more
 
 NUMBER_COLUMNS = (
-    "quantity",
+    "compared",
     "printed",
     "printed_is_bound",
     "printed_low",
@@ -49,7 +49,7 @@ NUMBER_COLUMNS = (
     "presence",
 )
 WORD_COLUMNS = (
-    "quantity",
+    "compared",
     "printed",
     "reproduced",
     "agreement",
@@ -160,7 +160,8 @@ def compare_numbers(
     Raises
     ------
     ConfigurationError
-        If a named column does not exist, or the standard error cannot be had as described.
+        If a named column does not exist, a key has the name of a column of the result, or the
+        standard error cannot be had as described.
     DesignError
         If two rows have the same keys, or a value is not a number.
 
@@ -175,11 +176,12 @@ def compare_numbers(
     1      b               NaN               printed
     2      c               NaN            reproduced
     """
+    _require_free_names(keys, NUMBER_COLUMNS)
     _require_values(printed, reproduced, values)
     rows: list[dict[str, Any]] = []
     for named, left, right in joined_rows(printed, reproduced, keys):
         for value in values:
-            row = {"quantity": value.estimate, **_number_row(left, right, value)}
+            row = {"compared": value.estimate, **_number_row(left, right, value)}
             row |= attainability(named, value.estimate, right, unattainable)
             rows.append(named | row | {"presence": presence(left, right)})
     frame = pd.DataFrame(rows, columns=[*keys, *NUMBER_COLUMNS])
@@ -230,13 +232,14 @@ def compare_words(
     >>> compare_words(printed, ours, keys=["feature"], columns=["age", "sex"])["agreement"].tolist()
     ['borderline', 'agrees']
     """
+    _require_free_names(keys, WORD_COLUMNS)
     for table, name in ((printed, "printed"), (reproduced, "reproduced")):
         require_columns(table, columns, name)
     rows: list[dict[str, Any]] = []
     for named, left, right in joined_rows(printed, reproduced, keys):
         for column in columns:
             words = [cell_text(side.get(column)) if side else "" for side in (left, right)]
-            row: dict[str, Any] = {"quantity": column, "printed": words[0], "reproduced": words[1]}
+            row: dict[str, Any] = {"compared": column, "printed": words[0], "reproduced": words[1]}
             row["agreement"] = _word_agreement(*words)
             row |= attainability(named, column, right, unattainable)
             rows.append(named | row | {"presence": presence(left, right)})
@@ -262,7 +265,7 @@ def summarise(comparison: pd.DataFrame) -> Summary:
     """
     attainable = comparison["attainable"].astype(bool)
     counts = comparison.loc[attainable, "agreement"].value_counts()
-    keys = list(comparison.columns[: comparison.columns.get_loc("quantity")])
+    keys = list(comparison.columns[: comparison.columns.get_loc("compared")])
     lonely = comparison.loc[comparison["presence"] != "both", keys].astype(str)
     return Summary(
         agrees=int(counts.get("agrees", 0)),
@@ -336,6 +339,17 @@ def _word_agreement(printed: str, reproduced: str) -> Agreement:
     if printed == reproduced:
         return "agrees"
     return "borderline" if printed.rstrip("*") == reproduced.rstrip("*") else "differs"
+
+
+def _require_free_names(keys: Sequence[str], columns: Sequence[str]) -> None:
+    """Keys stand beside the columns of the comparison and cannot share their names."""
+    taken = [name for name in keys if name in columns]
+    if taken:
+        raise ConfigurationError(
+            "a key has the name of a column of the comparison",
+            expected="none of " + ", ".join(columns),
+            found=", ".join(taken),
+        )
 
 
 def _require_values(

@@ -125,7 +125,7 @@ def word_view(
     """
     words, notes = _Words(labels), _Notes()
     records = _records(comparison)
-    quantities = list(dict.fromkeys(str(record["quantity"]) for record in records))
+    quantities = list(dict.fromkeys(str(record["compared"]) for record in records))
     table = _chunks(records, max(len(quantities), 1))
     names = [", ".join(words(record[0][key]) for key in keys) for record in table]
     corner = ", ".join(words(key) for key in keys)

@@ -146,7 +146,9 @@ def _raters_per_patient(cohort: IntensityCohort, rng: np.random.Generator) -> li
             counts[giver] -= 1
             counts[taker] += 1
     extra = max(cohort.protocol.n_participants - n_printed, 0)
-    return [*counts.tolist(), *rng.integers(low, high + 1, size=extra).tolist()]
+    # spawned: further patients must not move the draws of the printed ones
+    further = rng.spawn(1)[0].integers(low, high + 1, size=extra)
+    return [*counts.tolist(), *further.tolist()]
 
 
 def intensity_tables(cohort: IntensityCohort, seed: int) -> IntensityTables:

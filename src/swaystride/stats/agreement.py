@@ -150,9 +150,9 @@ def conditional_share(table: pd.DataFrame, row: Hashable, column: Hashable) -> f
                 expected="one of " + ", ".join(map(str, labels)),
                 found=str(level),
             )
-    counts = table.loc[row]
+    counts = table.to_numpy()[table.index.get_loc(row)]
     total = int(counts.sum())
-    return float(counts[column] / total) if total else float("nan")
+    return float(counts[table.columns.get_loc(column)] / total) if total else float("nan")
 
 
 def _paired(

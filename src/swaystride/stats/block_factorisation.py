@@ -23,6 +23,9 @@ from scipy.linalg import lapack
 from swaystride.stats.block_layout import BlockBatch, BlockLayout
 from swaystride.stats.grouping_factor import CodeArray, FloatArray
 
+# Width from which blocks are factorised one by one; smaller ones are solved side by side.
+_WIDE = 16
+
 
 class BlockFactorisation:
     """Everything about the covariance that does not depend on the response.
@@ -54,21 +57,19 @@ class BlockFactorisation:
         for i in layout.border:
             self.ratio_border[layout.columns[i]] = gamma[i]
         padded = np.zeros((end + 1) * (end + 1))
-        self._blocks: list[FloatArray] = []
+        self._solvers: list[_BlockSolver] = []
         self.T0: list[FloatArray] = []
         self.K: list[FloatArray] = []
-        logdet = 0.0
         for batch in batches:
             k, ratio = batch.width, self.ratio_inner[batch.levels]
-            inner, outer = batch.products[:, :, :k], batch.products[:, :, k:]
-            blocks = np.eye(k) + inner * ratio[:, None, :]
+            inner, outer = batch.products[:, :k], batch.products[:, k:]
+            solver = _BlockSolver(np.eye(k) + ratio[:, :, None] * inner)
             # Solving keeps digits at large ratios that an inverse of the blocks would lose.
-            solved = np.linalg.solve(blocks, batch.products)
-            logdet += float(np.linalg.slogdet(blocks)[1].sum())
-            self._blocks.append(blocks)
-            self.T0.append(np.ascontiguousarray(solved[:, :, :k]))
-            self.K.append(np.ascontiguousarray(solved[:, :, k:]))
-            local = (outer * ratio[:, :, None]).transpose(0, 2, 1) @ self.K[-1]
+            solved = solver.solve(batch.products).transpose(0, 2, 1)
+            self._solvers.append(solver)
+            self.T0.append(solved[:, :, :k])
+            self.K.append(solved[:, :, k:])
+            local = (outer * ratio[:, None, :]) @ self.K[-1]
             padded += np.bincount(batch.scatter, local.ravel(), minlength=len(padded))
         S0 = corner - padded.reshape(end + 1, end + 1)[:end, :end]
         self.S0 = 0.5 * (S0 + S0.T)
@@ -77,6 +78,7 @@ class BlockFactorisation:
         scaled[np.arange(b), np.arange(b)] += 1.0
         self.lower = np.linalg.cholesky(scaled)
         diagonal = 2.0 * np.log(np.diag(self.lower))
+        logdet = sum(solver.logdet() for solver in self._solvers)
         self.logdet_ml = logdet + float(diagonal[:b].sum())
         self.logdet_reml = self.logdet_ml + float(diagonal[b:].sum())
 
@@ -141,8 +143,8 @@ class BlockFactorisation:
         solved = self.border_inverse @ reduced[:-1]
         onward = np.vstack([self.ratio_border[:, None] * solved, np.zeros((1, m))])
         effects = np.zeros((self.layout.n_interior + 1, m))
-        for batch, K, blocks in zip(self.batches, self.K, self._blocks, strict=True):
-            alone = np.linalg.solve(blocks, given[batch.levels])
+        for batch, K, solver in zip(self.batches, self.K, self._solvers, strict=True):
+            alone = solver.solve(given[batch.levels].transpose(0, 2, 1)).transpose(0, 2, 1)
             effects[batch.levels] = alone - K @ onward[batch.columns]
         return effects[:-1], solved[: self.b], solved[self.b :]
 
@@ -181,7 +183,8 @@ class BlockFactorisation:
         weight = self._weight(inverse)
         levels = np.zeros(self.layout.n_interior + 1)
         for batch, T0, K in zip(self.batches, self.T0, self.K, strict=True):
-            part = K @ weight[batch.columns[:, :, None], batch.columns[:, None, :]]
+            c = K.shape[2]
+            part = K @ weight.take(batch.scatter).reshape(len(K), c, c)
             taken = np.einsum("mkc,mkc->mk", part, K)
             levels[batch.levels] = np.diagonal(T0, axis1=1, axis2=2) - taken
         border = np.einsum("ij,ji->i", inverse[: self.b], self.S0[: len(inverse), : self.b])
@@ -236,3 +239,35 @@ class BlockFactorisation:
             return self.lower
         inverse: FloatArray = lapack.dtrtri(self.lower, lower=1)[0]
         return np.sqrt(self.ratio_border)[:, None] * np.tril(inverse).T
+
+
+class _BlockSolver:
+    """Solutions of the equations of each block, with one factorisation of wide blocks.
+
+    `transposed` holds the transposes of the blocks, shape (m, width, width); wide ones are
+    overwritten. In column order, the order of LAPACK, these are the blocks themselves.
+    """
+
+    def __init__(self, transposed: FloatArray) -> None:
+        self.transposed = transposed
+        self.pivots: list[CodeArray] = []
+        if transposed.shape[1] >= _WIDE:
+            for block in transposed:
+                self.pivots.append(lapack.dgetrf(block.T, overwrite_a=1)[1])
+
+    def logdet(self) -> float:
+        """Sum of the log-determinants."""
+        if not self.pivots:
+            return float(np.linalg.slogdet(self.transposed)[1].sum())
+        diagonal = np.diagonal(self.transposed, axis1=1, axis2=2)
+        return float(np.log(np.abs(diagonal)).sum())
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solve for the rows of right sides, shape (m, q, width)."""
+        if not self.pivots:
+            solved = np.linalg.solve(self.transposed.transpose(0, 2, 1), right.transpose(0, 2, 1))
+            return solved.transpose(0, 2, 1)
+        given = np.array(right, order="C")
+        for block, pivots, values in zip(self.transposed, self.pivots, given, strict=True):
+            lapack.dgetrs(block.T, pivots, values.T, overwrite_b=1)
+        return given

@@ -62,8 +62,8 @@ class BlockBatch:
     columns : array of int, shape (m, n_columns)
         Border column (those of the fixed effects follow the border factors) in each column;
         empty ones hold ``n_border + p``.
-    products : array, shape (m, width, width + n_columns)
-        Cross-products within the blocks, then with their border columns.
+    products : array, shape (m, width + n_columns, width)
+        Cross-products of the slots, then of the border columns, with the slots.
     scatter : array of int
         For each pair of columns of each block its place in the flattened padded border.
     """
@@ -108,9 +108,8 @@ def _cost(layout: BlockLayout, p: int) -> float:
     k = np.bincount(layout.block, minlength=layout.n_blocks).astype(float)
     c = np.bincount(layout.touched[:, 0], minlength=layout.n_blocks) + float(p)
     b = layout.n_border + p
-    return (
-        float((2.0 * k**3 + 3.0 * k * k * c + 2.0 * k * c * c + 0.2 * k * b * b).sum()) + 4 * b**3
-    )
+    inside = 2.0 * k**3 + 3.0 * k * k * c + 2.0 * k * c * c + 0.2 * k * b * b
+    return float(inside.sum() + 4 * b**3)
 
 
 def _layout(factors: Sequence[GroupingFactor], carrier: int) -> BlockLayout:
@@ -208,13 +207,13 @@ def _batch(
 
     inside = slot_of[stacked(layout.interior)]
     outside = k + place[of_row, stacked(layout.border)]
-    here = ((of_row * k + inside) * (k + c))[:, None]
-    flat = (here + np.concatenate([inside, outside])).ravel()
-    products = np.bincount(flat, minlength=m * k * (k + c)).astype(float).reshape(m, k, k + c)
+    here = of_row * (k + c) + np.concatenate([inside, outside])
+    flat = (here[:, None] * k + inside).ravel()
+    products = np.bincount(flat, minlength=m * k * (k + c)).astype(float).reshape(m, k + c, k)
     sums = np.zeros((layout.n_interior + 1, p))
     for i in layout.interior:
         sums[layout.columns[i]] = design.factors[i].sum_rows(design.Q)
-    products[:, :, k : k + p] = sums[levels]
+    products[:, k : k + p] = sums[levels].transpose(0, 2, 1)
     scatter = (columns[:, :, None] * (end + 1) + columns[:, None, :]).ravel()
     return BlockBatch(levels, columns, products, scatter)
 

@@ -128,9 +128,11 @@ def cluster_resamples(clusters: npt.ArrayLike, n: int, seed: Seed) -> Iterator[C
 
     Examples
     --------
-    >>> for rows in cluster_resamples(["a", "b", "a"], 3, seed=3):
+    >>> for rows in cluster_resamples(["a", "b", "a"], 3, seed=1):
     ...     print(rows)
-    XX
+    [0 2 1]
+    [0 2 0 2]
+    [1 1]
     """
     rows = _rows_of_clusters(clusters)
     for weight in cluster_weights(len(rows), n, seed):

@@ -1,67 +1,98 @@
-"""Least-squares prediction from several covariates, in sample and for clusters left out."""
+"""Prediction by ordinary least squares, also of clusters that the fit has not seen."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import qr
+import pandas as pd
 
 from swaystride.errors import ModelError
 from swaystride.stats.cluster_bootstrap import cluster_codes
-from swaystride.stats.grouping_factor import CodeArray, FloatArray
+from swaystride.stats.grouping_factor import FloatArray
+from swaystride.stats.mixed_design import check_columns, check_finite
 
-# Share of a standardised column that its predecessors leave unexplained, below which it counts as
-# their combination. Measures that are rounded to seven digits in between must still be caught.
+# Share of a standardised column that must be left after the columns kept before it: above what
+# rounding to eight digits in a file leaves of a combination if the spread is a tenth of the mean,
+# far below what real measures leave. R's lm, which does not centre the columns, has 1e-7.
 _COLLINEAR = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class LinearPrediction:
-    """A least-squares prediction.
+    """Ordinary least squares with an intercept.
 
     Attributes
     ----------
-    predicted : array, shape (n,)
-        In sample.
-    intercept : float
-    coefficients : array, shape (p,)
-        In the units of the covariates; zero for dropped ones.
-    kept, dropped : tuple of int
-        Columns that were used, and those that the others determine.
+    kept, dropped : tuple of str
+        Columns used, and columns that are constant or a combination of those kept before them.
+    coefficients : pandas.Series
+        ``Intercept``, then the kept columns.
+    predictions : pandas.Series
+        Of the rows that were fitted.
     """
 
-    predicted: FloatArray
-    intercept: float
-    coefficients: FloatArray
-    kept: tuple[int, ...]
-    dropped: tuple[int, ...]
+    kept: tuple[str, ...]
+    dropped: tuple[str, ...]
+    coefficients: pd.Series[float]
+    predictions: pd.Series[float]
 
-    def predict(self, covariates: npt.ArrayLike) -> FloatArray:
-        """Predict further rows.
+    def predict(self, X: pd.DataFrame) -> pd.Series[float]:
+        """Predict rows from their columns.
 
         Parameters
         ----------
-        covariates : array, shape (m, p)
-            In the order of the columns that were fitted.
+        X : pandas.DataFrame
+            With the kept columns.
+
+        Returns
+        -------
+        pandas.Series
+            Indexed as `X`.
+
+        Raises
+        ------
+        ModelError
+            If a column is absent, not numeric or not finite.
         """
-        x = np.asarray(covariates, dtype=float)
-        result: FloatArray = self.intercept + x @ self.coefficients
-        return result
+        values = _numbers(X, self.kept) @ self.coefficients.to_numpy()[1:]
+        return pd.Series(self.coefficients.iloc[0] + values, index=X.index, name="prediction")
 
 
-def least_squares_prediction(covariates: npt.ArrayLike, outcome: npt.ArrayLike) -> LinearPrediction:
-    """Ordinary least squares with an intercept; collinear columns are dropped and named.
+@dataclass(frozen=True, eq=False)
+class LeftOutPrediction:
+    """Predictions of each cluster by a fit to all others.
 
-    Columns are standardised first, so that units do not decide what is dropped. The pivoted QR
-    decomposition takes the column with the most that is new first.
+    Attributes
+    ----------
+    predictions : pandas.Series
+        By row of the table.
+    dropped : dict
+        Columns that the fit without a cluster dropped, by cluster.
+    """
+
+    predictions: pd.Series[float]
+    dropped: dict[Any, tuple[str, ...]]
+
+
+def least_squares_prediction(
+    X: pd.DataFrame, y: npt.ArrayLike | pd.Series[float]
+) -> LinearPrediction:
+    """Fit an outcome by ordinary least squares on an intercept and columns.
+
+    Columns are standardised and orthogonalised in their order; one of which nothing is left is
+    moved behind the others and dropped (QR with limited pivoting, as in R's ``lm``). So of
+    collinear columns the later is dropped, whatever their units: pivoting by size would leave the
+    choice between two equivalent columns to rounding.
 
     Parameters
     ----------
-    covariates : array, shape (n, p)
-    outcome : array, shape (n,)
+    X : pandas.DataFrame
+        One numeric column per predictor, without an intercept.
+    y : array or pandas.Series, shape (n,)
+        Outcome; a Series has the index of `X`.
 
     Returns
     -------
@@ -70,97 +101,127 @@ def least_squares_prediction(covariates: npt.ArrayLike, outcome: npt.ArrayLike) 
     Raises
     ------
     ModelError
-        If shapes do not fit, a value is missing, or the outcome is constant.
+        If rows do not match, a value is missing or not finite, or there are not more rows than
+        coefficients.
 
     Examples
     --------
-    >>> x = np.array([[1.0, 2.0], [2.0, 4.0], [3.0, 6.0], [4.0, 8.0]])
-    >>> fit = least_squares_prediction(x, [3.0, 5.0, 7.0, 9.0])
-    >>> len(fit.dropped), fit.predicted.round(9).tolist()
-    (1, [3.0, 5.0, 7.0, 9.0])
+    >>> speed = pd.DataFrame({"mean_speed": [1.0, 2, 4, 3], "path_length": [30.0, 60, 120, 90]})
+    >>> fit = least_squares_prediction(speed, [3.0, 5.0, 9.0, 7.0])
+    >>> fit.kept, fit.dropped, fit.coefficients.round(9).tolist()
+    (('mean_speed',), ('path_length',), [1.0, 2.0])
     """
-    x, y = _checked(covariates, outcome)
-    center, spread = x.mean(axis=0), x.std(axis=0)
-    usable = spread > _COLLINEAR * np.maximum(np.abs(center), np.finfo(float).tiny)
-    z = np.zeros_like(x)
-    z[:, usable] = (x[:, usable] - center[usable]) / spread[usable]
-    triangle, order = qr(z, mode="r", pivoting=True)
-    diagonal = np.abs(np.diag(triangle[: min(x.shape)]))
-    rank = int((diagonal > _COLLINEAR * np.sqrt(len(y))).sum())
-    kept = np.sort(order[:rank])
-    weights = np.linalg.lstsq(z[:, kept], y - y.mean(), rcond=None)[0]
-    coefficients = np.zeros(x.shape[1])
-    coefficients[kept] = weights / spread[kept]
-    intercept = float(y.mean() - center @ coefficients)
-    dropped = tuple(sorted(set(range(x.shape[1])) - set(kept.tolist())))
+    names = tuple(X.columns)
+    values, outcome = _numbers(X, names), _outcome(X, y)
+    mean = values.mean(axis=0)
+    centred = values - mean
+    kept = _independent(values, centred)
+    if len(values) <= len(kept) + 1:
+        raise ModelError(
+            f"{len(values)} rows cannot carry {len(kept) + 1} coefficients", expected="more rows"
+        )
+    scale = np.sqrt((centred[:, kept] ** 2).sum(axis=0))
+    Q, R = np.linalg.qr(centred[:, kept] / scale)
+    middle = outcome.mean()
+    slopes = np.linalg.solve(R, Q.T @ (outcome - middle)) / scale
+    used = tuple(names[at] for at in kept)
     return LinearPrediction(
-        y.mean() + z[:, kept] @ weights, intercept, coefficients, tuple(kept.tolist()), dropped
+        kept=used,
+        dropped=tuple(name for at, name in enumerate(names) if at not in kept),
+        coefficients=pd.Series(
+            np.append(middle - mean[kept] @ slopes, slopes), index=["Intercept", *used]
+        ),
+        predictions=pd.Series(middle + centred[:, kept] @ slopes, index=X.index, name="prediction"),
     )
 
 
 def leave_one_cluster_out(
-    covariates: npt.ArrayLike, outcome: npt.ArrayLike, clusters: npt.ArrayLike
-) -> FloatArray:
-    """Predict every cluster from a fit to all others.
+    X: pd.DataFrame, y: npt.ArrayLike | pd.Series[float], clusters: npt.ArrayLike
+) -> LeftOutPrediction:
+    """Predict each cluster by a fit to the rows of all other clusters.
+
+    Which columns are dropped is decided anew in every fit, from its own rows alone.
 
     Parameters
     ----------
-    covariates : array, shape (n, p)
-    outcome : array, shape (n,)
-    clusters : array or Series, shape (n,)
+    X : pandas.DataFrame
+        One numeric column per predictor, without an intercept.
+    y : array or pandas.Series, shape (n,)
+        Outcome; a Series has the index of `X`.
+    clusters : array or pandas.Series, shape (n,)
         Cluster of each row.
 
     Returns
     -------
-    array, shape (n,)
+    LeftOutPrediction
 
     Raises
     ------
     ModelError
-        As :func:`least_squares_prediction`, or with fewer than two clusters.
+        As :func:`least_squares_prediction`, and if there are fewer than two clusters.
 
     Examples
     --------
-    >>> left_out = leave_one_cluster_out([[1.0], [2], [3], [4]], [2.0, 4, 6, 8], list("aabb"))
-    >>> left_out.round(9).tolist()
-    [2.0, 4.0, 6.0, 8.0]
+    >>> X = pd.DataFrame({"x": [0.0, 1, 2, 3, 4, 5]})
+    >>> left_out = leave_one_cluster_out(X, [0.0, 1, 2, 9, 9, 9], list("aaabbb"))
+    >>> left_out.predictions.round(9).tolist()  # rows of a from those of b, and the reverse
+    [9.0, 9.0, 9.0, 3.0, 4.0, 5.0]
     """
-    x, y = _checked(covariates, outcome)
     codes, labels = cluster_codes(clusters)
-    if len(codes) != len(y):
+    if len(codes) != len(X):
         raise ModelError(
-            "the clusters do not fit the rows", expected=f"{len(y)} labels", found=str(len(codes))
+            "the clusters do not fit the rows", expected=f"{len(X)} rows", found=f"{len(codes)}"
         )
-    predicted = np.empty(len(y))
-    for cluster in range(len(labels)):
-        out: CodeArray = np.flatnonzero(codes == cluster)
-        rest = np.flatnonzero(codes != cluster)
-        predicted[out] = least_squares_prediction(x[rest], y[rest]).predict(x[out])
-    return predicted
+    outcome = _outcome(X, y)
+    predictions = np.empty(len(X))
+    dropped = {}
+    for at, label in enumerate(labels):
+        out = codes == at
+        fit = least_squares_prediction(X[~out], outcome[~out])
+        predictions[out] = fit.predict(X[out])
+        dropped[label] = fit.dropped
+    return LeftOutPrediction(pd.Series(predictions, index=X.index, name="prediction"), dropped)
 
 
-def dropped_names(fit: LinearPrediction, names: Sequence[str]) -> list[str]:
-    """Names of the dropped columns.
+def _independent(values: FloatArray, centred: FloatArray) -> list[int]:
+    """Columns that are no combination of the intercept and the kept columns before them."""
+    kept: list[int] = []
+    basis = np.zeros((len(values), 0))
+    for at in range(values.shape[1]):
+        norm = np.linalg.norm(centred[:, at])
+        if norm <= _COLLINEAR * np.linalg.norm(values[:, at]):
+            continue
+        rest = centred[:, at] / norm
+        for _ in range(2):  # the second pass removes what rounding left of the first
+            rest = rest - basis @ (basis.T @ rest)
+        left = np.linalg.norm(rest)
+        if left > _COLLINEAR:
+            kept.append(at)
+            basis = np.column_stack([basis, rest / left])
+    return kept
 
-    Parameters
-    ----------
-    fit : LinearPrediction
-    names : sequence of str
-        Of all columns.
-    """
-    return [names[at] for at in fit.dropped]
+
+def _numbers(X: pd.DataFrame, columns: tuple[str, ...]) -> FloatArray:
+    if not X.columns.is_unique:
+        raise ModelError(f"the column {X.columns[X.columns.duplicated()][0]} occurs twice")
+    check_columns(X, columns)
+    for column in columns:
+        if not pd.api.types.is_numeric_dtype(X[column]):
+            raise ModelError(f"the column {column} is not numeric")
+    values = X[list(columns)].to_numpy(dtype=float)
+    check_finite(values, list(map(str, columns)))
+    return values
 
 
-def _checked(covariates: npt.ArrayLike, outcome: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-    x, y = np.asarray(covariates, dtype=float), np.asarray(outcome, dtype=float)
-    if x.ndim != 2 or y.shape != (len(x),) or len(y) < 2:
+def _outcome(X: pd.DataFrame, y: npt.ArrayLike | pd.Series[float]) -> FloatArray:
+    if isinstance(y, pd.Series) and not y.index.equals(X.index):
+        raise ModelError("outcome and columns are labelled by other rows")
+    values = np.asarray(y, dtype=float)
+    if values.shape != (len(X),):
         raise ModelError(
-            "covariates and outcome do not fit",
-            expected="(n, p) and (n,), n at least 2",
-            found=f"{x.shape} and {y.shape}",
+            "the outcome does not fit the rows",
+            expected=f"{len(X)} values",
+            found=str(values.shape),
         )
-    if not (np.isfinite(x).all() and np.isfinite(y).all()):
-        raise ModelError("a value is missing", expected="complete rows")
-    if np.ptp(y) == 0.0:
-        raise ModelError("the outcome is constant", found=f"{y[0]:g}")
-    return x, y
+    check_finite(values[:, None], ["y"])
+    return values

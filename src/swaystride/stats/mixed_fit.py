@@ -277,7 +277,7 @@ def _best_ratios(
     if start is not None:
         start = np.maximum(start, 0.1 / size)
         bound.structure.keep(start)
-        return minimise_over_ratios(objective, size, start)
+        return minimise_over_ratios(objective, _effective_sizes(bound, start, reml=reml), start)
     first = minimise_over_ratios(objective, size, 1.0 / size)
     if first.converged and (first.gamma > 0.0).all():
         return first
@@ -286,6 +286,19 @@ def _best_ratios(
     second = minimise_over_ratios(objective, size, np.full(len(size), _LARGE), known)
     better = second.value < first.value - 1e-9 * abs(first.value)
     return second if second.converged and (better or not first.converged) else first
+
+
+def _effective_sizes(bound: CrossedResponse, gamma: FloatArray, *, reml: bool) -> FloatArray:
+    """What the rows per level are worth beside the other components, shape (k,).
+
+    The slope of the log-determinant of a lone balanced factor is its number of levels times
+    ``size / (1 + gamma * size)``; solved for the size.
+    """
+    factors = bound.structure.design.factors
+    levels = np.array([factor.n_levels for factor in factors])
+    slope = bound.structure.at(gamma).logdet_gradient(reml=reml) / levels
+    sizes: FloatArray = slope / np.maximum(1.0 - slope * gamma, 1e-3)
+    return sizes
 
 
 class _CrossedDeviance:

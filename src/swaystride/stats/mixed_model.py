@@ -27,7 +27,9 @@ from swaystride.stats.mixed_refits import Refits, Seed, refit_responses, simulat
 IntervalMethod = Literal["wald", "profile", "bootstrap"]
 
 
-def fit_mixed_model(formula: str, frame: pd.DataFrame, *, reml: bool = True) -> MixedModelFit:
+def fit_mixed_model(
+    formula: str, frame: pd.DataFrame, *, reml: bool = True, family: str = "gaussian"
+) -> MixedModelFit:
     """Fit a linear mixed model with any number of crossed or nested random intercepts.
 
     Parameters
@@ -38,6 +40,8 @@ def fit_mixed_model(formula: str, frame: pd.DataFrame, *, reml: bool = True) -> 
         One row per observation, complete in all columns that the formula mentions.
     reml : bool, optional
         Restricted maximum likelihood (default) or maximum likelihood.
+    family : str, optional
+        Distribution of the outcome given the random effects; only ``"gaussian"``.
 
     Returns
     -------
@@ -46,8 +50,8 @@ def fit_mixed_model(formula: str, frame: pd.DataFrame, *, reml: bool = True) -> 
     Raises
     ------
     ModelError
-        If the model is out of scope (random slopes) or not identifiable, or the table lacks a
-        column or a value. Rows are never dropped silently.
+        If the model is out of scope (random slopes, another family) or not identifiable, or the
+        table lacks a column or a value. Rows are never dropped silently.
 
     Examples
     --------
@@ -60,6 +64,12 @@ def fit_mixed_model(formula: str, frame: pd.DataFrame, *, reml: bool = True) -> 
     >>> fit.refit_many(fit.simulate(500, seed=7)).estimates.shape
     (500, 2)
     """
+    if family != "gaussian":
+        raise ModelError(
+            "generalised linear mixed models are out of scope",
+            expected="family 'gaussian'",
+            found=repr(family),
+        )
     design, y = design_from_formula(parse_mixed_formula(formula), frame)
     return MixedModelFit(formula, fit_design(design, y, reml=reml), frame.index)
 
@@ -291,7 +301,9 @@ class MixedModelFit:
         responses : array, shape (N, n_observations)
             One response per row, as :meth:`simulate` returns them.
         processes : int, optional
-            Processes that share the work if there are several grouping factors.
+            Processes that share the work if there are several grouping factors; the result does
+            not depend on their number. A script that asks for more than one protects its own
+            start by ``if __name__ == "__main__":``.
 
         Returns
         -------

@@ -32,6 +32,8 @@ _RESOLVED = 1e-8
 # Promise and length of a step below which secants give way to the exact Hessian.
 _NEAR = 1e-5
 _NEAR_STEP = 2e-3
+# Steps after which secants alone are too slow.
+_MAX_SECANTS = 8
 # Distance to a minimum already known at which another search that leads there may end.
 _SAME_HILL = 0.1
 
@@ -75,16 +77,17 @@ class SplitObjective(Protocol):
 class _Point:
     """Where the search stands, on the scale of u.
 
-    `distance` is the way since the Hessian was exact; `costly` holds gradient and (approximate)
-    Hessian of the costly part.
+    `distance` and `secants` are the way and the steps since the Hessian was exact; `costly` holds
+    gradient and (approximate) Hessian of the costly part.
     """
 
     u: FloatArray
     value: float
     gradient: FloatArray
     hessian: FloatArray
-    distance: float
-    costly: tuple[FloatArray, FloatArray] | None
+    costly: tuple[FloatArray, FloatArray] | None = None
+    distance: float = 0.0
+    secants: int = 0
 
 
 class _OnU:
@@ -102,12 +105,12 @@ class _OnU:
         if callable(self.objective):
             value, gradient, hessian = self.objective(gamma)
             hessian = self._hessian(u, gradient, hessian)
-            return _Point(u, value, gradient * jacobian, hessian, 0.0, None)
+            return _Point(u, value, gradient * jacobian, hessian)
         (value, gradient, known), slope = self.objective.sketch(gamma)
         known = self._hessian(u, gradient - slope, known)
         costly = self._hessian(u, slope, self.objective.costly_hessian(gamma))
-        point = _Point(u, value, gradient * jacobian, known + costly, 0.0, None)
-        return replace(point, costly=(slope * jacobian, costly))
+        parts = (slope * jacobian, costly)
+        return _Point(u, value, gradient * jacobian, known + costly, parts)
 
     def renewed(self, here: _Point) -> _Point:
         """The same point with an exact Hessian."""
@@ -117,7 +120,7 @@ class _OnU:
         gamma, jacobian = np.expm1(here.u) / self.size, np.exp(here.u) / self.size
         costly = self._hessian(here.u, slope / jacobian, self.objective.costly_hessian(gamma))
         hessian = here.hessian - model + costly
-        return replace(here, hessian=hessian, distance=0.0, costly=(slope, costly))
+        return _Point(here.u, here.value, here.gradient, hessian, (slope, costly))
 
     def following(self, u: FloatArray, before: _Point) -> _Point:
         """Exact but for the costly Hessian, which follows from the point before by a secant."""
@@ -130,7 +133,9 @@ class _OnU:
         slope = slope * jacobian
         model = _secant(before.costly[1], move, slope - before.costly[0])
         far = before.distance + float(np.abs(move).max(initial=0.0))
-        return _Point(u, value, gradient * jacobian, known + model, far, (slope, model))
+        return _Point(
+            u, value, gradient * jacobian, known + model, (slope, model), far, before.secants + 1
+        )
 
     def _hessian(self, u: FloatArray, gradient: FloatArray, hessian: FloatArray) -> FloatArray:
         """Hessian on the scale of u by the chain rule."""
@@ -187,7 +192,8 @@ def minimise_over_ratios(
         promise, length = _promise(here, step), float(np.abs(step).max(initial=0.0))
         if known is not None and _leads_to(known, here, promise, size):
             return replace(known, evaluations=known.evaluations + on_u.evaluations)
-        if here.distance > _NEAR_STEP and promise <= _NEAR and length <= _NEAR_STEP:
+        near = promise <= _NEAR and length <= _NEAR_STEP
+        if here.secants >= _MAX_SECANTS or (near and here.distance > _NEAR_STEP):
             here = on_u.renewed(here)
             continue
         if promise <= _PROMISE * (1.0 + abs(here.value)) and length < 1e-4:

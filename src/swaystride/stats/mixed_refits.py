@@ -98,7 +98,9 @@ def refit_responses(
         Variance ratios near which the answers are expected, to save steps with several factors.
     processes : int, optional
         Processes that share the responses of a design with several factors. Every response is
-        fitted alone, so that the result does not depend on their number.
+        fitted alone, so that the result does not depend on their number. The processes start
+        afresh: a script that asks for more than one protects its own start by
+        ``if __name__ == "__main__":``.
 
     Returns
     -------
@@ -107,7 +109,8 @@ def refit_responses(
     Raises
     ------
     ModelError
-        If the shape is wrong, a value is not finite, or a response has no residual variance.
+        If the shape is wrong, a value is not finite, a response has no residual variance, or
+        there is not at least one process.
 
     Examples
     --------
@@ -128,6 +131,8 @@ def refit_responses(
     if not np.isfinite(responses).all():
         at = int(np.argmin(np.isfinite(responses).all(axis=1)))
         raise ModelError(f"response {at} is not finite")
+    if processes < 1:
+        raise ModelError("no process to work with", expected="1 or more", found=str(processes))
     structure = structure_of(design)
     if isinstance(structure, OneFactorStructure):
         chunks = [
@@ -195,21 +200,33 @@ def _in_processes(
     processes: int,
 ) -> list[_Arrays]:
     """Share the responses among processes; one process stays in this one."""
-    if processes <= 1 or len(responses) < 2 * processes:
-        return [_one_by_one(design, responses, start, reml=reml)]
-    parts = np.array_split(responses, processes)
-    fit_part = partial(_one_by_one, design, start=start, reml=reml)
-    # fresh processes: a fork of one with threads of a linear algebra library may hang
+    if processes == 1 or len(responses) < 2 * processes:
+        return [_one_by_one(design, (0, responses), start=start, reml=reml)]
+    parts = np.array_split(np.arange(len(responses)), processes)
+    given = [(int(rows[0]), responses[rows]) for rows in parts]
+    # A copy leaves behind what the design has computed for itself.
+    copy = MixedDesign(design.X, design.names, design.factors)
+    fit_part = partial(_one_by_one, copy, start=start, reml=reml)
+    # Fresh processes: a fork of one with threads of a linear algebra library may hang.
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        return list(pool.map(fit_part, parts))
+        return list(pool.map(fit_part, given))
 
 
 def _one_by_one(
-    design: MixedDesign, responses: FloatArray, start: FloatArray | None, *, reml: bool
+    design: MixedDesign,
+    numbered: tuple[int, FloatArray],
+    *,
+    start: FloatArray | None,
+    reml: bool,
 ) -> _Arrays:
+    """Fit one response after the other; `numbered` holds the number of the first and all."""
     estimates, se, variances, loglik, converged = [], [], [], [], []
-    for y in responses:
-        fit = fit_design(design, y, reml=reml, start=start)
+    first, responses = numbered
+    for at, y in enumerate(responses, start=first):
+        try:
+            fit = fit_design(design, y, reml=reml, start=start)
+        except ModelError as error:
+            raise ModelError(str(error), place=f"response {at}") from None
         estimates.append(fit.beta)
         se.append(np.sqrt(np.diag(fit.covariance)))
         variances.append(fit.variances)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Final, Literal
+from typing import Final, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,8 @@ ReliabilityForm = Literal["printed", "recommended"]
 #: Lower bounds of the classes above poor (Koo & Li 2016, as in the dissertation §3.3.4.1).
 RELIABILITY_CLASSES: Final = ((0.5, "moderate"), (0.75, "good"))
 _EXCELLENT_ABOVE: Final = 0.9
+# Share of the ratings below which a residual is rounding.
+_ROUNDING: Final = 1e-13
 
 
 def reliability_formula(
@@ -88,6 +90,10 @@ def reliability_formula(
     return f"{outcome} ~ {fixed} + " + " + ".join(f"(1|{group})" for group in groups)
 
 
+@overload
+def intraclass_correlation(variance_components: pd.Series[float], rater: str) -> float: ...
+@overload
+def intraclass_correlation(variance_components: pd.DataFrame, rater: str) -> FloatArray: ...
 def intraclass_correlation(
     variance_components: pd.Series[float] | pd.DataFrame, rater: str
 ) -> float | FloatArray:
@@ -107,7 +113,7 @@ def intraclass_correlation(
     Raises
     ------
     ModelError
-        If no component contains the rater.
+        If no component contains the rater, the residual is absent, or there is no variance.
 
     Examples
     --------
@@ -125,8 +131,15 @@ def intraclass_correlation(
         raise ModelError(
             f"no variance component contains {rater!r}", found=", ".join(map(str, table.columns))
         )
-    shares = table.loc[:, ~np.array(with_rater)].sum(axis=1) / table.sum(axis=1)
-    values: FloatArray = shares.to_numpy(dtype=float)
+    if "Residual" not in table.columns:
+        raise ModelError(
+            "the residual variance is absent", found=", ".join(map(str, table.columns))
+        )
+    variances = table.to_numpy(dtype=float)
+    total = variances.sum(axis=1)
+    if not (total > 0.0).all():
+        raise ModelError("there is no variance to share", found=f"a total of {np.min(total)}")
+    values: FloatArray = variances[:, ~np.array(with_rater)].sum(axis=1) / total
     return float(values[0]) if isinstance(variance_components, pd.Series) else values
 
 
@@ -189,14 +202,29 @@ def bootstrap_icc(
     Returns
     -------
     BootstrappedICC
+
+    Raises
+    ------
+    ModelError
+        If `n` is less than two, the level is no probability, no component contains the rater, or
+        fewer than two refits converge.
+
+    Notes
+    -----
+    Percentiles need no scale: Fisher's z or the logit would give the same limits.
     """
+    _check_level(level)
+    if n < 2:
+        raise ModelError("too few draws for an interval", expected="2 or more", found=str(n))
+    estimate = intraclass_correlation(fit.variance_components, rater)
     refits = fit.refit_many(fit.simulate(n, seed), processes=processes)
     converged = np.asarray(refits.converged)
+    if converged.sum() < 2:
+        raise ModelError("the refits do not converge", found=f"{(~converged).sum()} of {n} failed")
     draws = intraclass_correlation(refits.variance_components[converged], rater)
     tails = [(1.0 - level) / 2.0, (1.0 + level) / 2.0]
     low, high = np.quantile(draws, tails).tolist()
-    estimate = intraclass_correlation(fit.variance_components, rater)
-    return BootstrappedICC(float(estimate), low, high, n, int((~converged).sum()))
+    return BootstrappedICC(estimate, low, high, n, int((~converged).sum()))
 
 
 def two_way_icc(table: npt.ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
@@ -214,12 +242,14 @@ def two_way_icc(table: npt.ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
     DataFrame
         ``icc, f, df1, df2, p, ci_low, ci_high`` by ``ICC(1,1)``, ``ICC(2,1)``, ``ICC(3,1)``,
         ``ICC(1,k)``, ``ICC(2,k)``, ``ICC(3,k)``. The limits of ICC(2,·) follow McGraw & Wong
-        (1996); its F test is that of ICC(3,·).
+        (1996); its F test is that of ICC(3,·). Limits of ICC(·,k) are those of
+        ICC(·,1) after the Spearman-Brown formula.
 
     Raises
     ------
     ModelError
-        If a rating is missing, or there are fewer than two targets or raters.
+        If a rating is missing, there are fewer than two targets or raters, all ratings are equal,
+        or raters differ by a constant only.
 
     Examples
     --------
@@ -235,11 +265,19 @@ def two_way_icc(table: npt.ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
         )
     if not np.isfinite(y).all():
         raise ModelError("a rating is missing", expected="complete ratings, or a mixed model")
+    _check_level(level)
     n, k = y.shape
+    if np.ptp(y) == 0.0:
+        raise ModelError("all ratings are equal", found=str(y[0, 0]))
     between = k * y.mean(axis=1).var(ddof=1)
     raters = n * y.mean(axis=0).var(ddof=1)
     within = float(y.var(axis=1, ddof=1).mean())
-    error = (within * n * (k - 1) - raters * (k - 1)) / ((n - 1) * (k - 1))
+    rest = y - y.mean(axis=1, keepdims=True) - y.mean(axis=0) + y.mean()
+    error = float((rest**2).sum()) / ((n - 1) * (k - 1))
+    if np.sqrt(error) <= _ROUNDING * np.abs(y).max():
+        raise ModelError(
+            "the ratings leave no residual variance", found="raters that differ by a constant only"
+        )
     one = _one_way(between / within, n, k, level)
     three = _consistency(between / error, n, k, level)
     two = _agreement(between, raters, error, n, k, level)
@@ -247,6 +285,11 @@ def two_way_icc(table: npt.ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
     names = ["ICC(1,1)", "ICC(2,1)", "ICC(3,1)", "ICC(1,k)", "ICC(2,k)", "ICC(3,k)"]
     columns = ["icc", "f", "df1", "df2", "p", "ci_low", "ci_high"]
     return pd.DataFrame(rows, index=pd.Index(names, name="form"), columns=columns)
+
+
+def _check_level(level: float) -> None:
+    if not 0.0 < level < 1.0:
+        raise ModelError("the confidence level is no probability", found=str(level))
 
 
 _Rows = tuple[Sequence[float], Sequence[float]]
@@ -280,9 +323,10 @@ def _agreement(between: float, raters: float, error: float, n: int, k: int, leve
     """ICC(2,1) and ICC(2,k), with limits by Satterthwaite's approximation."""
     df1, df_error, upper = n - 1, (n - 1) * (k - 1), 0.5 + level / 2.0
     icc = (between - error) / (between + (k - 1) * error + k * (raters - error) / n)
-    ratio = raters / error
-    top = df_error * (k * icc * ratio + n * (1.0 + (k - 1) * icc) - k * icc) ** 2
-    bottom = df1 * (k * icc * ratio) ** 2 + (n * (1.0 + (k - 1) * icc) - k * icc) ** 2
+    # The degrees of freedom are a mean of positive parts only if the share is not negative.
+    share, ratio = max(icc, 0.0), raters / error
+    top = df_error * (k * share * ratio + n * (1.0 + (k - 1) * share) - k * share) ** 2
+    bottom = df1 * (k * share * ratio) ** 2 + (n * (1.0 + (k - 1) * share) - k * share) ** 2
     df2 = top / bottom
     high_f = float(f_distribution.ppf(upper, df1, df2))
     low_f = float(f_distribution.ppf(upper, df2, df1))
@@ -291,8 +335,14 @@ def _agreement(between: float, raters: float, error: float, n: int, k: int, leve
     high = n * (low_f * between - error) / (spread + n * low_f * between)
     f = between / error
     p = float(f_distribution.sf(f, df1, df_error))
-    averages = [k * x / (1.0 + (k - 1) * x) for x in (icc, low, high)]
+    averages = [_of_average(x, k) for x in (icc, low, high)]
     return (
         [icc, f, df1, df_error, p, low, high],
         [averages[0], f, df1, df_error, p, *averages[1:]],
     )
+
+
+def _of_average(icc: float, k: int) -> float:
+    """Reliability of the mean of k raters, Spearman-Brown; no bound beyond its pole."""
+    below = 1.0 + (k - 1) * icc
+    return k * icc / below if below > 0.0 else -float("inf")

@@ -68,7 +68,7 @@ def import_participant(
         {str(trial): Path(file) for trial, file in own["file"].items()},
         folder,
         rules,
-        own.loc[own["exclude"] != "", "exclude"].to_dict(),
+        {str(t): str(why) for t, why in own["exclude"].items() if why != ""},
     )
     save_recordings(files.recordings, imported.recordings)
     for table, path in (

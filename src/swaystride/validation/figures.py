@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swaystride.presentation.figure_style import OKABE_ITO, new_figure
+
+_KIND_LABELS = {
+    "icc": "ICC, closed formula",
+    "F": "F",
+    "limit": "confidence limit",
+    "variance": "variance",
+    "lme4 icc": "ICC, REML",
+    "criterion": "REML criterion",
+    "estimate": "fixed effect",
+    "se": "standard error",
+    "sd": "SD of an effect",
+}
 
 
 def figure_force_plate(trials: pd.DataFrame) -> Figure:
@@ -61,3 +75,54 @@ def figure_lumbar(trials: pd.DataFrame) -> Figure:
     panels[0].set_ylabel("error against the complete window, %")
     panels[-1].legend(loc="lower right")
     return fig
+
+
+def figure_reliability(comparison: pd.DataFrame) -> Figure:
+    """ICC(2,1) of every table of ratings, ours and R's, and all differences over their tolerance.
+
+    Parameters
+    ----------
+    comparison : DataFrame
+        As from
+        :func:`swaystride.validation.reliability_and_mixed_models.reliability_comparison`.
+    """
+    fig = new_figure("double", height_mm=75)
+    left, right = fig.subplots(1, 2)
+    _draw_agreement(left, comparison)
+    _draw_differences(right, comparison)
+    return fig
+
+
+def _draw_agreement(axes: Axes, comparison: pd.DataFrame) -> None:
+    """ICC(2,1) with its interval, two lines per set of ratings."""
+    quantities = ["ICC(2,1)", "ICC(2,1): lower limit", "ICC(2,1): upper limit"]
+    chosen = comparison[comparison["quantity"].isin(quantities)]
+    names = chosen["set"].unique().tolist()
+    for column, label, colour, shift in (
+        ("value", "ours", OKABE_ITO["blue"], -0.12),
+        ("reference", "irr", OKABE_ITO["vermillion"], 0.12),
+    ):
+        wide = chosen.pivot_table(index="set", columns="quantity", values=column)
+        icc, low, high = (wide.loc[names, quantity].to_numpy() for quantity in quantities)
+        at = np.arange(len(names)) + shift
+        axes.errorbar(icc, at, xerr=[icc - low, high - icc], fmt="o", color=colour, label=label)
+    axes.set_yticks(range(len(names)), [name.replace("_", " ") for name in names])
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_xlabel("ICC(2,1), 95 % interval")
+    axes.legend(loc="center right")
+
+
+def _draw_differences(axes: Axes, comparison: pd.DataFrame) -> None:
+    """Difference from R over the tolerance, by kind of quantity, on a logarithmic scale."""
+    kinds = comparison["kind"].unique().tolist()
+    floor = 1e-6
+    share = (comparison["difference"].abs() / comparison["tolerance"]).clip(lower=floor)
+    row = comparison["kind"].map(kinds.index)
+    axes.plot(share, row, "o", color=OKABE_ITO["blue"], alpha=0.4, markeredgewidth=0)
+    axes.axvline(1.0, color=OKABE_ITO["vermillion"], linewidth=0.8)
+    axes.set_xscale("log")
+    axes.set_xlim(0.5 * floor, 10.0)
+    axes.text(1.3, len(kinds) - 0.6, "tolerance", color=OKABE_ITO["vermillion"], rotation=90)
+    axes.set_yticks(range(len(kinds)), [_KIND_LABELS[kind] for kind in kinds])
+    axes.set_ylim(len(kinds) - 0.5, -0.5)
+    axes.set_xlabel("difference from R over its tolerance")

@@ -12,9 +12,7 @@ from swaystride.studies.intensity.observations import analysed_ratings
 from swaystride.studies.intensity.plan import FEATURES, IntensityPlan
 
 #: Log of each feature at intensity 0, and its rise per level of intensity.
-SWAY = dict(
-    zip(FEATURES, product((0.0, 0.3, -0.2, 0.5, 0.4, 0.2, 3.9, 1.5), (0.35,)), strict=True)
-)
+SWAY = dict(zip(FEATURES, product((0.0, 0.3, -0.2, 0.5, 0.4, 0.2, 3.9, 1.5), (0.35,)), strict=True))
 DIFFICULTY_EFFECTS = (0.4, 0.6, 0.6, -0.2)
 
 
@@ -142,3 +140,20 @@ def ratings(design):
 @pytest.fixture(scope="session")
 def sway(cohort_tables):
     return sway_of(cohort_tables[2], cohort_tables[4])
+
+
+@pytest.fixture(scope="session")
+def make_cohort():
+    """The generator itself, for tests that need other sizes."""
+    return draw_cohort
+
+
+@pytest.fixture(scope="session")
+def write_tables():
+    return write_cohort
+
+
+@pytest.fixture(scope="session")
+def plan_with():
+    """A plan with some choices changed."""
+    return make_plan

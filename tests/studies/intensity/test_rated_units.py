@@ -1,6 +1,7 @@
 """Resampled predictions, ranks and shares against plain computations on the drawn rows."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -36,7 +37,7 @@ def test_every_resample_equals_the_plain_computation_on_its_rows(seed, discrete)
     accuracy = units.accuracy(predicted, weights)
     share = units.share_given(predicted, weights, given=4, then=5)
     for at, rows in enumerate(cluster_resamples(patients, 25, seed=seed)):
-        plain = least_squares_prediction(x[rows], y[rows]).predicted
+        plain = least_squares_prediction(pd.DataFrame(x[rows]), y[rows]).predictions
         np.testing.assert_allclose(predicted[at, units.unit_of_row[rows]], plain, atol=1e-8)
         expected = stats.spearmanr(plain.round(9), y[rows]).statistic
         np.testing.assert_allclose(spearman[at], expected, atol=1e-10)
@@ -52,7 +53,9 @@ def test_left_out_predictions_equal_refits_without_the_patient():
     units = rated_units(patients, x, y)
     once = units.predict_left_out(np.ones((1, 5)))
     np.testing.assert_allclose(
-        once[0, units.unit_of_row], leave_one_cluster_out(x, y, patients), atol=1e-8
+        once[0, units.unit_of_row],
+        leave_one_cluster_out(pd.DataFrame(x), y, patients).predictions,
+        atol=1e-8,
     )
     weights = cluster_weights(5, 6, seed=2)
     drawn = units.predict_left_out(weights)
@@ -61,18 +64,18 @@ def test_left_out_predictions_equal_refits_without_the_patient():
         rows = np.repeat(np.arange(len(y)), weight[codes])
         for patient in np.flatnonzero(weight):
             rest = rows[codes[rows] != patient]
-            fit = least_squares_prediction(x[rest], y[rest])
+            fit = least_squares_prediction(pd.DataFrame(x[rest]), y[rest])
             own = np.flatnonzero(codes == patient)
             np.testing.assert_allclose(
-                drawn[at, units.unit_of_row[own]], fit.predict(x[own]), atol=1e-8
+                drawn[at, units.unit_of_row[own]], fit.predict(pd.DataFrame(x[own])), atol=1e-8
             )
 
 
 @settings(max_examples=60, deadline=None)
 @given(
-    st.lists(
-        st.tuples(st.integers(0, 4), st.integers(0, 3)), min_size=2, max_size=12
-    ).filter(lambda pairs: sum(n for _, n in pairs) > 0)
+    st.lists(st.tuples(st.integers(0, 4), st.integers(0, 3)), min_size=2, max_size=12).filter(
+        lambda pairs: sum(n for _, n in pairs) > 0
+    )
 )
 def test_mean_ranks_are_those_of_the_repeated_values(pairs):
     values, weights = np.array(pairs, dtype=float).T

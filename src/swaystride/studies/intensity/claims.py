@@ -8,7 +8,6 @@ from typing import Final
 
 import pandas as pd
 
-from swaystride.stats.reliability import reliability_class
 from swaystride.studies.intensity.plan import DIMENSIONS, FEATURES, RATING_LEVELS
 
 Values = Mapping[str, float]
@@ -34,6 +33,9 @@ class Claim:
 
 
 def _good(v: Values, p: Values, alpha: float) -> list[bool]:
+    # the models behind it take seconds to import
+    from swaystride.stats.reliability import reliability_class
+
     return [
         reliability_class(v[f"study3_text/icc_pt_{level}"]) == "good" for level in RATING_LEVELS
     ]
@@ -111,7 +113,7 @@ def _self_5_and_4(v: Values, p: Values, alpha: float) -> list[bool]:
 
 
 def _predicted_5(v: Values, p: Values, alpha: float) -> list[bool]:
-    five = v["study3_text/kinematics_5_agrees_per_exercise_percent"]
+    five = v["study3_text/kinematics_5_agrees_with_pt_per_exercise_percent"]
     return [five > v["study3_text/kinematics_4_is_pt_4_per_exercise_percent"]]
 
 

@@ -109,7 +109,7 @@ def read_design(folder: Path) -> IntensityDesign:
     DesignError
         If a table is malformed, the tables contradict each other, the ratings are in wide form, or
         all ratings are by one therapist. What is merely incomplete is listed by
-        :func:`swaystride.studies.intensity.completeness.design_findings`.
+        :func:`swaystride.studies.intensity.observations.rating_findings`.
     """
     files = {
         name: folder / f"{name}.tsv" for name in ("participants", "raters", "trials", "ratings")
@@ -225,7 +225,7 @@ def _check_trials(participants: pd.DataFrame, trials: pd.DataFrame, files: dict[
                 found="; ".join(" ".join(row) for row in combinations.to_numpy().tolist()),
             )
     for keys, other in ((["exercise"], "exercise_order"), (["exercise_order"], "exercise")):
-        several = trials.groupby(["participant", *keys])[other].nunique() > 1
+        several = trials.groupby(["participant", *keys])[other].nunique().gt(1)
         if several.any():
             participant, value = several.index[int(several.to_numpy().argmax())]
             raise DesignError(

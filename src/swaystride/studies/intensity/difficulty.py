@@ -9,11 +9,16 @@ from __future__ import annotations
 
 import pandas as pd
 
-from swaystride.stats.cluster_bootstrap import bootstrap_interval, cluster_weights
 from swaystride.stats.clustered_mixed_model import resampled_fixed_effects
 from swaystride.stats.mixed_model import MixedModelFit, fit_mixed_model
 from swaystride.studies.intensity.plan import DIMENSIONS, RATING_LEVELS, IntensityPlan, RatingLevel
-from swaystride.studies.intensity.results import result_row, results, tested_effect
+from swaystride.studies.intensity.results import (
+    participant_interval,
+    patient_weights,
+    result_row,
+    results,
+    tested_effect,
+)
 
 
 def fit_difficulty(
@@ -52,18 +57,13 @@ def difficulty(ratings: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:
     rows = []
     for level in RATING_LEVELS:
         patients = ratings.loc[ratings["rating_level"] == level, "participant"]
-        n_patients = patients.nunique()
-        weights = cluster_weights(n_patients, plan.cluster_bootstrap_n, plan.cluster_bootstrap_seed)
+        weights = patient_weights(patients.nunique(), plan)
         for dimension in DIMENSIONS:
             fit = fit_difficulty(ratings, dimension, level, plan)
             row = tested_effect(fit, dimension, plan)
             draws = resampled_fixed_effects(fit, patients, weights)
-            interval = bootstrap_interval(
-                row["estimate"],
-                draws[:, 1],
-                n_clusters=n_patients,
-                level=plan.confidence_level,
-                scale="identity",
+            interval = participant_interval(
+                draws[:, 1], row["estimate"], "identity", weights.shape[1], plan
             )
             rows.append(
                 result_row(

@@ -34,6 +34,6 @@ def cohort_estimates(
         correlations(ratings, sway, plan, quick=True),
         quick_icc(ratings, plan),
         self_ratings(ratings, plan),
-        predictions(ratings, sway, plan)["results"],
+        predictions(ratings, sway, plan, quick=True)["results"],
     ]
     return pd.concat(parts, ignore_index=True)

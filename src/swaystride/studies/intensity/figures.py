@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from swaystride.presentation.figure_style import OKABE_ITO, new_figure
 from swaystride.stats.agreement import contingency, rounded_rating
 from swaystride.studies.intensity.plan import DIMENSIONS, RATING_LEVELS, RatingLevel
-from swaystride.studies.intensity.self_ratings import paired_ratings
 
 _LEVELS = (1, 2, 3, 4, 5)
 _RATED = {"per_trial": "a trial", "per_exercise": "an exercise"}
@@ -25,7 +24,8 @@ def figure_self_ratings(ratings: pd.DataFrame, level: RatingLevel) -> Figure:
         As from :func:`swaystride.studies.intensity.observations.analysed_ratings`.
     level : {"per_trial", "per_exercise"}
     """
-    pairs = paired_ratings(ratings, level)
+    chosen = (ratings["rating_level"] == level) & ratings["self_rating"].notna()
+    pairs = ratings[chosen]
     counts = contingency(pairs["self_rating"].astype(int), pairs["rating"].astype(int), _LEVELS)
     return _counts_figure(counts, f"self-rating of {_RATED[level]}", level)
 
@@ -50,7 +50,7 @@ def _counts_figure(counts: pd.DataFrame, row_label: str, level: RatingLevel) -> 
     values = counts.to_numpy(dtype=float)
     totals = values.sum(axis=1, keepdims=True)
     shares = np.divide(values, totals, out=np.zeros_like(values), where=totals > 0)
-    fig = new_figure("single", height_mm=86)
+    fig = new_figure("single", height_mm=78)
     axes = fig.subplots()
     image = axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, origin="lower")
     for row, column in np.ndindex(values.shape):
@@ -60,7 +60,7 @@ def _counts_figure(counts: pd.DataFrame, row_label: str, level: RatingLevel) -> 
             f"{values[row, column]:.0f}",
             ha="center",
             va="center",
-            color="white" if shares[row, column] > 0.55 else OKABE_ITO["black"],
+            color="white" if shares[row, column] > 0.7 else OKABE_ITO["black"],
         )
     ticks = range(len(_LEVELS))
     axes.set_xticks(ticks, [str(k) for k in _LEVELS])
@@ -117,7 +117,8 @@ def figure_difficulty(effects: pd.DataFrame, printed: pd.DataFrame) -> Figure:
         axes.set_yticks(y, list(DIMENSIONS.values()))
         axes.set_xlabel("rating per step of difficulty")
         axes.set_title(f"Ratings of {_RATED[level].split()[1]}s")
-    columns[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.1), ncols=3)
+    columns[0].set_ylim(-len(DIMENSIONS) - 0.6, 0.5)
+    columns[1].legend(loc="lower right", fontsize="small")
     return fig
 
 
@@ -140,7 +141,7 @@ def figure_residuals(residuals: pd.DataFrame) -> Figure:
         top.set_title(label)
         top.set_xlabel("fitted")
         ordered = np.sort(residual) / residual.std()
-        quantile = norm.ppf((np.arange(ordered.size) + 0.5) / ordered.size)
+        quantile = ndtri((np.arange(ordered.size) + 0.5) / ordered.size)
         bottom.plot(quantile, ordered, ".", **dots)
         bottom.axline((0, 0), slope=1, color=OKABE_ITO["black"], linewidth=0.6)
         bottom.set_xlabel("normal quantile")

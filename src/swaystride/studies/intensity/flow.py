@@ -6,7 +6,8 @@ from typing import Any
 
 import pandas as pd
 
-from swaystride.studies.intensity.design import SELF, IntensityDesign
+from swaystride.studies.intensity.design import SELF, TRIALS_PER_EXERCISE, IntensityDesign
+from swaystride.studies.intensity.observations import expected_ratings
 
 
 def study_flow(design: IntensityDesign, exclusions: pd.DataFrame) -> list[dict[str, Any]]:
@@ -16,7 +17,8 @@ def study_flow(design: IntensityDesign, exclusions: pd.DataFrame) -> list[dict[s
     ----------
     design : IntensityDesign
     exclusions : DataFrame
-        Excluded recordings with ``participant``, ``trial`` and ``reason``.
+        Excluded recordings with ``participant``, ``trial`` and ``reason``. Ratings of an excluded
+        recording stay: they need no sway.
 
     Returns
     -------
@@ -24,20 +26,24 @@ def study_flow(design: IntensityDesign, exclusions: pd.DataFrame) -> list[dict[s
         For participants, therapists, trials, therapists' ratings and self-ratings: ``unit``,
         ``planned``, ``recorded``, ``excluded`` (list of reason and count), ``analysed``.
     """
-    ratings = design.ratings
-    own = ratings["rater"] == SELF
-    whole = ratings["trial"].isna()
-    active = ratings.loc[~own & ratings["rating"].notna(), "rater"].nunique()
-    lost = exclusions.groupby("participant").size()
-    done = design.trials.groupby("participant").size()
-    gone = int((lost.reindex(done.index).fillna(0) == done).sum())
+    expected = expected_ratings(design)
+    own, whole = expected["rater"] == SELF, expected["trial"].isna()
+    rated = set(expected.loc[~own & (expected["status"] == "given"), "participant"])
+    active = expected.loc[~own & (expected["status"] == "given"), "rater"].nunique()
+    exercises = design.trials[["participant", "exercise"]].drop_duplicates()
     reasons = exclusions["reason"].value_counts(sort=False).sort_index()
+    people, raters = len(design.participants), len(design.raters)
     return [
-        _unit("participants", len(done), {"no usable trial": gone}),
-        _unit("therapists", len(design.raters), {"rated nobody": len(design.raters) - active}),
-        _unit("trials", len(design.trials), {str(k): int(n) for k, n in reasons.items()}),
+        _unit("participants", people, {"no rating by a therapist": people - len(rated)}),
+        _unit("therapists", raters, {"rated nobody": raters - active}),
+        _unit(
+            "trials",
+            len(design.trials),
+            {str(reason): int(count) for reason, count in reasons.items()},
+            planned=TRIALS_PER_EXERCISE * len(exercises),
+        ),
         *(
-            _unit(name, int(rows.sum()), {"missing": int(ratings.loc[rows, "rating"].isna().sum())})
+            _rating_unit(name, expected[rows])
             for name, rows in (
                 ("ratings of trials", ~own & ~whole),
                 ("ratings of exercises", ~own & whole),
@@ -48,11 +54,20 @@ def study_flow(design: IntensityDesign, exclusions: pd.DataFrame) -> list[dict[s
     ]
 
 
-def _unit(name: str, recorded: int, excluded: dict[str, int]) -> dict[str, Any]:
+def _rating_unit(name: str, expected: pd.DataFrame) -> dict[str, Any]:
+    """Ratings of one kind: expected, with a row, empty, given."""
+    recorded = int((expected["status"] != "no row").sum())
+    empty = int((expected["status"] == "empty").sum())
+    return _unit(name, recorded, {"missing rating": empty}, planned=len(expected))
+
+
+def _unit(
+    name: str, recorded: int, excluded: dict[str, int], *, planned: int | None = None
+) -> dict[str, Any]:
     """One line of the flow; reasons without a case are left out."""
     return {
         "unit": name,
-        "planned": None,
+        "planned": planned,
         "recorded": recorded,
         "excluded": [{"reason": reason, "count": n} for reason, n in excluded.items() if n],
         "analysed": recorded - sum(excluded.values()),

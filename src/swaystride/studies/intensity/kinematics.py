@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 import pandas as pd
 
 from swaystride.errors import ModelError
-from swaystride.stats.agreement import exact_agreement, rounded_rating
-from swaystride.stats.cluster_bootstrap import (
-    Scale,
-    bootstrap_interval,
-    cluster_codes,
-    cluster_weights,
-)
+from swaystride.findings import FINDING_COLUMNS
 from swaystride.stats.clustered_mixed_model import resampled_random_intercepts
 from swaystride.stats.correlation import spearman
-from swaystride.stats.grouping_factor import CodeArray, FloatArray
-from swaystride.stats.linear_prediction import (
-    dropped_names,
-    least_squares_prediction,
-    leave_one_cluster_out,
-)
+from swaystride.stats.grouping_factor import FloatArray
+from swaystride.stats.linear_prediction import least_squares_prediction
 from swaystride.stats.marginal_correlation import (
     MarginalCorrelation,
     bootstrap_marginal_correlation,
@@ -36,22 +26,28 @@ from swaystride.studies.intensity.plan import (
     IntensityPlan,
     RatingLevel,
 )
+from swaystride.studies.intensity.prediction import judge_prediction
+from swaystride.studies.intensity.rated_units import rated_units
 from swaystride.studies.intensity.results import (
-    participant_intervals,
+    participant_interval,
+    patient_weights,
     result_row,
     results,
-    share_given,
 )
 
-_SCALES: Mapping[str, Scale] = {
-    "spearman_kinematics_vs_pt": "fisher_z",
-    "kinematics_predicts_pt_accuracy": "logit",
-    "kinematics_5_agrees": "logit",
-    "kinematics_4_is_pt_5": "logit",
-    "kinematics_4_is_pt_4": "logit",
-}
 _NONE = (float("nan"), float("nan"))
-_PER_EXERCISE_ONLY = ("kinematics_5_agrees", "kinematics_4_is_pt_5", "kinematics_4_is_pt_4")
+
+#: Statistic of a prediction -> its name in study3_text, and the ratings for which it is printed.
+_PRINTED: Final[dict[str, tuple[str, tuple[RatingLevel, ...]]]] = {
+    "spearman": ("spearman_kinematics_vs_pt_{}", ("per_trial", "per_exercise")),
+    "accuracy_percent": (
+        "kinematics_predicts_pt_accuracy_{}_percent",
+        ("per_trial", "per_exercise"),
+    ),
+    "predicted_5_is_pt_5_percent": ("kinematics_5_agrees_with_pt_{}_percent", ("per_exercise",)),
+    "predicted_4_is_pt_5_percent": ("kinematics_4_is_pt_5_{}_percent", ("per_exercise",)),
+    "predicted_4_is_pt_4_percent": ("kinematics_4_is_pt_4_{}_percent", ("per_exercise",)),
+}
 
 
 def rated_sway(ratings: pd.DataFrame, sway: pd.DataFrame, level: RatingLevel) -> pd.DataFrame:
@@ -153,153 +149,123 @@ def _participant_interval(
     table: pd.DataFrame, x: FloatArray, r: float, plan: IntensityPlan
 ) -> tuple[float, float]:
     """Interval over patients of one marginal correlation."""
-    patients, level = table["participant"], plan.confidence_level
-    codes, labels = cluster_codes(patients)
-    weights = cluster_weights(len(labels), plan.cluster_bootstrap_n, plan.cluster_bootstrap_seed)
+    patients = table["participant"]
+    weights = patient_weights(patients.nunique(), plan)
     fits = resampled_random_intercepts(table["rating"], x, patients, weights, reml=plan.reml)
-    sums = [weights @ np.bincount(codes, weights=power) for power in (np.ones_like(x), x, x * x)]
-    spread = (sums[2] - sums[1] ** 2 / sums[0]) / (sums[0] - 1.0)
-    slope = fits.estimates[:, 1]
-    explained = slope**2 * spread
     other = fits.cluster_variance + fits.residual_variance
-    draws = np.sign(slope) * np.sqrt(explained / (explained + other))
-    return bootstrap_interval(r, draws, n_clusters=len(labels), level=level, scale="fisher_z")
+    draws = np.sign(fits.fixed_effects[:, 1]) * np.sqrt(
+        fits.fixed_variance / (fits.fixed_variance + other)
+    )
+    return participant_interval(draws, r, "fisher_z", weights.shape[1], plan)
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """Ratings predicted from the sway.
-
-    Parameters
-    ----------
-    table : DataFrame
-        ``participant``, ``exercise``, ``rater``, ``rating``, ``predicted``, ``left_out`` (predicted
-        without the patient), both not rounded.
-    dropped : list of str
-        Features that the others determine.
-    """
-
-    table: pd.DataFrame
-    dropped: list[str]
-
-
-def predict_ratings(
-    ratings: pd.DataFrame, sway: pd.DataFrame, level: RatingLevel, plan: IntensityPlan
-) -> Prediction:
-    """Predict ratings from all features, in sample and with the patient left out.
+def predictions(
+    ratings: pd.DataFrame, sway: pd.DataFrame, plan: IntensityPlan, *, quick: bool = False
+) -> dict[str, pd.DataFrame]:
+    """Predict ratings from all features together, rounded to the scale (Figure 3.4).
 
     Parameters
     ----------
     ratings, sway : DataFrame
         See :func:`rated_sway`.
-    level : {"per_trial", "per_exercise"}
     plan : IntensityPlan
+    quick : bool, optional
+        Judge the prediction in sample only.
 
     Returns
     -------
-    Prediction
+    dict of str to DataFrame
+        ``results``: what the text prints, in sample. ``left_out``: every statistic in sample and
+        for patients left out (:func:`swaystride.studies.intensity.prediction.judge_prediction`).
+        ``predicted``: ``rating_level``, ``participant``, ``exercise``, ``rater``, ``rating``,
+        ``predicted`` and ``left_out``, not rounded. ``dropped``: ``rating``, ``feature``, features
+        that the others determine. ``findings``: these, and ratings without features, with
+        ``participant``, ``trial`` and the finding columns.
 
     Raises
     ------
     ModelError
         If there is nothing to predict from.
     """
-    table = rated_sway(ratings, sway, level)
-    if table.empty:
-        raise ModelError(f"no rating {level} has the features of its trials")
-    covariates, names = _covariates(table, plan)
-    fit = least_squares_prediction(covariates, table["rating"])
-    left_out = leave_one_cluster_out(covariates, table["rating"], table["participant"])
-    kept = table[["participant", "exercise", "rater", "rating"]]
-    return Prediction(
-        kept.assign(predicted=fit.predicted, left_out=left_out), dropped_names(fit, names)
-    )
-
-
-def predictions(
-    ratings: pd.DataFrame, sway: pd.DataFrame, plan: IntensityPlan
-) -> dict[str, pd.DataFrame]:
-    """Everything that the text says about predictions from the sway.
-
-    Parameters
-    ----------
-    ratings, sway : DataFrame
-        See :func:`rated_sway`.
-    plan : IntensityPlan
-
-    Returns
-    -------
-    dict of str to DataFrame
-        ``results`` (in sample, as printed); ``left_out`` (``rating``, statistic, in sample, left
-        out); ``predicted`` (every rating with its predictions); ``dropped`` (``rating``,
-        ``feature``).
-    """
-    rows, compared, predicted, dropped = [], [], [], []
+    judged, printed, predicted, dropped, findings = [], [], [], [], []
     for level in RATING_LEVELS:
-        found = predict_ratings(ratings, sway, level, plan)
-        table = found.table
-        rating = table["rating"].to_numpy(dtype=float)
-        estimates = _statistics(rating, table["predicted"].to_numpy())
-        covariates, _ = _covariates(rated_sway(ratings, sway, level), plan)
-
-        def resampled(
-            rows: CodeArray, x: FloatArray = covariates, y: FloatArray = rating
-        ) -> dict[str, float]:
-            return _statistics(y[rows], least_squares_prediction(x[rows], y[rows]).predicted)
-
-        intervals = participant_intervals(
-            resampled,
-            table["participant"],
-            estimates,
-            _SCALES,
-            plan,
+        table = rated_sway(ratings, sway, level)
+        if table.empty:
+            raise ModelError(f"no rating {RATING_LEVELS[level]} has the features of its trials")
+        covariates = _covariates(table, plan)
+        fit = least_squares_prediction(covariates, table["rating"])
+        used = covariates[list(fit.kept)].to_numpy()
+        units = rated_units(table["participant"], used, table["rating"])
+        left_out = units.predict_left_out(np.ones((1, units.n_patients)))[0, units.unit_of_row]
+        kept = table[["participant", "exercise", "rater", "rating"]]
+        kept.insert(0, "rating_level", level)
+        predicted.append(kept.assign(predicted=fit.predictions, left_out=left_out))
+        judgement = judge_prediction(
+            units, predictor="kinematics", rating=level, plan=plan, left_out=not quick
         )
-        rank = spearman(table["predicted"], rating, level=plan.confidence_level)
-        others = _statistics(rating, table["left_out"].to_numpy())
-        for name, estimate in estimates.items():
-            if name in _PER_EXERCISE_ONLY and level == "per_trial":
-                continue
-            percent = name != "spearman_kinematics_vs_pt"
-            factor = 100.0 if percent else 1.0
-            low, high = intervals[name]
-            quantity = f"study3_text/{name}_{level}" + ("_percent" if percent else "")
-            rows.append(
-                result_row(
-                    quantity,
-                    factor * estimate,
-                    n=len(table),
-                    p=float("nan") if percent else rank.p,
-                    ci=_NONE if percent else (rank.ci_low, rank.ci_high),
-                    participant_ci=(factor * low, factor * high),
-                )
-            )
-            compared.append((level, name, factor * estimate, factor * others[name], len(table)))
-        predicted.append(table.assign(rating_level=level))
-        dropped += [(level, name) for name in found.dropped]
+        judged.append(judgement)
+        printed += _printed_rows(judgement, predicted[-1], level, plan)
+        dropped += [(level, name) for name in fit.dropped]
+        findings += _findings(ratings, table, level, fit.dropped)
     return {
-        "results": results(rows),
-        "left_out": pd.DataFrame(
-            compared, columns=["rating", "statistic", "in_sample", "left_out", "n"]
-        ),
+        "results": results(printed),
+        "left_out": pd.concat(judged, ignore_index=True),
         "predicted": pd.concat(predicted, ignore_index=True),
         "dropped": pd.DataFrame(dropped, columns=["rating", "feature"]),
+        "findings": pd.DataFrame(findings, columns=["participant", "trial", *FINDING_COLUMNS]),
     }
 
 
-def _covariates(table: pd.DataFrame, plan: IntensityPlan) -> tuple[FloatArray, list[str]]:
-    """Features as they enter the prediction, with their names."""
-    names = [name for name in table.columns if name.rstrip("_123") in FEATURES]
-    values = table[names].to_numpy(dtype=float)
-    return (np.log(values) if plan.prediction_transform == "log" else values), names
+def _covariates(table: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:
+    """Features as they enter the prediction."""
+    values = table[[name for name in table.columns if name.rstrip("_123") in FEATURES]]
+    return values.transform(np.log) if plan.prediction_transform == "log" else values
 
 
-def _statistics(rating: FloatArray, predicted: FloatArray) -> dict[str, float]:
-    """What is said about a prediction."""
-    rounded = rounded_rating(predicted).astype(float)
-    return {
-        "spearman_kinematics_vs_pt": spearman(predicted, rating).r,
-        "kinematics_predicts_pt_accuracy": exact_agreement(rounded, rating),
-        "kinematics_5_agrees": share_given(rounded, rating, 5, 5),
-        "kinematics_4_is_pt_5": share_given(rounded, rating, 4, 5),
-        "kinematics_4_is_pt_4": share_given(rounded, rating, 4, 4),
-    }
+def _printed_rows(
+    judgement: pd.DataFrame, predicted: pd.DataFrame, level: RatingLevel, plan: IntensityPlan
+) -> list[dict[str, object]]:
+    """What the text prints about a prediction, under the names of study3_text."""
+    rank = spearman(predicted["predicted"], predicted["rating"], level=plan.confidence_level)
+    rows = []
+    for statistic, (name, levels) in _PRINTED.items():
+        if level not in levels:
+            continue
+        row = judgement.loc[judgement["statistic"] == statistic].to_dict("records")[0]
+        ranked = statistic == "spearman"
+        rows.append(
+            result_row(
+                f"study3_text/{name.format(level)}",
+                row["in_sample"],
+                n=len(predicted),
+                p=rank.p if ranked else float("nan"),
+                ci=(rank.ci_low, rank.ci_high) if ranked else _NONE,
+                participant_ci=(
+                    row["in_sample_participant_ci_low"],
+                    row["in_sample_participant_ci_high"],
+                ),
+            )
+        )
+    return rows
+
+
+def _findings(
+    ratings: pd.DataFrame, table: pd.DataFrame, level: RatingLevel, dropped: Sequence[str]
+) -> list[tuple[str, ...]]:
+    """Features that a prediction does without, and ratings that it cannot use."""
+    label = RATING_LEVELS[level]
+    rows: list[tuple[str, ...]] = [
+        ("", "", "collinear_feature", "info", "", f"prediction {label}",
+         "a feature that the others do not determine", name)
+        for name in dropped
+    ]  # fmt: skip
+    given = ratings.loc[ratings["rating_level"] == level, "participant"].value_counts(sort=False)
+    used = table["participant"].value_counts(sort=False).reindex(given.index, fill_value=0)
+    wanted = "the sway of the trial" if level == "per_trial" else "the sway of all its trials"
+    rows += [
+        (str(patient), "", "rating_without_sway", "warning", "ratings.tsv", f"prediction {label}",
+         wanted, f"{n} ratings without it, left out")
+        for patient, n in (given - used).items()
+        if n > 0
+    ]  # fmt: skip
+    return rows

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from typing import Final
 
 import pandas as pd
 
@@ -14,6 +14,9 @@ from swaystride.studies.intensity.design import (
     difficulty_codes,
 )
 from swaystride.studies.intensity.plan import FEATURES, IntensityPlan
+
+#: Missing ratings that one finding names.
+_NAMED: Final = 3
 
 
 def analysed_ratings(design: IntensityDesign) -> pd.DataFrame:
@@ -71,8 +74,11 @@ def analysed_sway(
     return frame[["participant", "exercise", "trial", "duration_s", *FEATURES]]
 
 
-def rating_findings(design: IntensityDesign) -> pd.DataFrame:
-    """What is incomplete about ratings and trials without being wrong.
+def expected_ratings(design: IntensityDesign) -> pd.DataFrame:
+    """Every rating that was to be given, and what became of it.
+
+    Whoever rated a patient at all was to rate every trial and every exercise of this patient, and
+    so was the patient.
 
     Parameters
     ----------
@@ -81,45 +87,97 @@ def rating_findings(design: IntensityDesign) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        ``participant``, ``trial`` and the finding columns: a therapist who rated nobody, a
-        patient with fewer than two therapists, a missing rating, a rated trial or exercise
-        without a self-rating, an exercise without all its trials.
+        ``participant``, ``exercise``, ``trial`` (NA: the exercise as a whole), ``rater``,
+        ``rating`` and ``status``: ``given``, ``empty`` (a row without a rating) or ``no row``.
     """
-    ratings, trials = design.ratings, design.trials
-    therapists = ratings[ratings["rater"] != SELF]
-    idle = sorted(set(design.raters["rater"]) - set(therapists["rater"]))
-    rows = [("", "", "idle_rater", "ratings by every rater", f"{name}: none") for name in idle]
-    per_participant = therapists.groupby("participant")["rater"].nunique()
-    n_raters = per_participant.reindex(design.participants["participant"], fill_value=0)
-    rows += [
-        (str(name), "", "few_raters", "2 or more raters", f"{n}")
-        for name, n in n_raters[n_raters < 2].items()
-    ]
-    missing = therapists[therapists["rating"].isna()]
-    rows += [
-        (row["participant"], _rated_thing(row), "missing_rating", "a rating", row["rater"])
-        for row in missing.to_dict("records")
-    ]
     key = ["participant", "exercise", "trial"]
-    own = ratings.loc[(ratings["rater"] == SELF) & ratings["rating"].notna(), key]
-    rated = therapists[key].drop_duplicates().merge(own, how="left", indicator=True)
-    rows += [
-        (row["participant"], _rated_thing(row), "missing_self_rating", "a self-rating", "none")
-        for row in rated[rated["_merge"] == "left_only"].to_dict("records")
+    done = design.trials[key].astype({"trial": "Int64"})
+    whole = done.drop_duplicates(key[:2])
+    whole = whole.assign(trial=whole["trial"].where(whole["trial"].isna()))
+    judged = design.ratings.loc[design.ratings["rater"] != SELF, ["participant", "rater"]]
+    own = design.participants[["participant"]].assign(rater=SELF)
+    pairs = pd.concat([judged.drop_duplicates(), own], ignore_index=True)
+    planned = pairs.merge(pd.concat([done, whole], ignore_index=True), on="participant")
+    found = planned.merge(
+        design.ratings[[*key, "rater", "rating"]], on=[*key, "rater"], how="left", indicator=True
+    )
+    status = found["rating"].notna().map({True: "given", False: "empty"})
+    found["status"] = status.mask(found["_merge"] == "left_only", "no row")
+    return found[[*key, "rater", "rating", "status"]]
+
+
+def rating_findings(design: IntensityDesign) -> pd.DataFrame:
+    """What is incomplete about trials and ratings without being wrong.
+
+    Parameters
+    ----------
+    design : IntensityDesign
+
+    Returns
+    -------
+    DataFrame
+        ``participant``, ``trial`` and the finding columns: a therapist who rated nobody; a
+        patient with one therapist, whose ratings stay but say nothing about how raters differ, or
+        with none; an exercise without all its trials; missing ratings and self-ratings.
+    """
+    given = expected_ratings(design).query("rater != @SELF and status == 'given'")
+    idle = [str(name) for name in design.raters["rater"] if name not in set(given["rater"])]
+    rows = [
+        (
+            "",
+            "rater_without_ratings",
+            "raters.tsv",
+            f"rater {name}",
+            "ratings by every rater",
+            "none",
+        )
+        for name in idle
     ]
-    counts = trials.groupby(["participant", "exercise"], sort=False, as_index=False).size()
-    expected = f"{TRIALS_PER_EXERCISE} trials"
-    rows += [
-        (row["participant"], row["exercise"], "missing_trial", expected, str(row["size"]))
-        for row in counts[counts["size"] < TRIALS_PER_EXERCISE].to_dict("records")
-    ]
+    for patient in design.participants["participant"].astype(str):
+        n_raters = given.loc[given["participant"] == patient, "rater"].nunique()
+        found = "one: no comparison between raters" if n_raters else "none: patient is not analysed"
+        if n_raters < 2:
+            rows.append((patient, "few_raters", "ratings.tsv", "", "two therapists or more", found))
     return pd.DataFrame(
-        [(a, b, check, "warning", "ratings.tsv", "", c, d) for a, b, check, c, d in rows],
+        [
+            (row[0], "", row[1], "warning", *row[2:])
+            for row in [*rows, *_missing_trials(design), *_missing_ratings(design)]
+        ],
         columns=["participant", "trial", *FINDING_COLUMNS],
     )
 
 
-def _rated_thing(row: Mapping[Hashable, object]) -> str:
-    """Exercise and, if there is one, trial of a row of ratings.tsv."""
-    trial = str(row["trial"])
-    return f"{row['exercise']}" + (f" trial {trial[0]}" if trial[:1].isdigit() else "")
+def _missing_trials(design: IntensityDesign) -> list[tuple[str, ...]]:
+    """Exercises with fewer trials than the design asks for."""
+    expected = "trials " + ", ".join(str(number) for number in range(1, TRIALS_PER_EXERCISE + 1))
+    rows: list[tuple[str, ...]] = []
+    for _, own in design.trials.groupby(["participant", "exercise"], sort=False):
+        numbers = sorted(own["trial"])
+        if len(numbers) < TRIALS_PER_EXERCISE:
+            patient, exercise = own["participant"].iloc[0], own["exercise"].iloc[0]
+            found = ", ".join(str(number) for number in numbers)
+            place = f"exercise {exercise}"
+            rows.append((patient, "missing_trial", "trials.tsv", place, expected, found))
+    return rows
+
+
+def _missing_ratings(design: IntensityDesign) -> list[tuple[str, ...]]:
+    """Missing ratings, those of one rater of one patient together."""
+    expected = expected_ratings(design)
+    rows: list[tuple[str, ...]] = []
+    for _, own in expected.groupby(["participant", "rater"], sort=False):
+        patient, rater = own["participant"].iloc[0], own["rater"].iloc[0]
+        lost = own[own["status"] != "given"]
+        if lost.empty:
+            continue
+        check = "missing_self_rating" if rater == SELF else "missing_rating"
+        things = [
+            exercise + ("" if pd.isna(trial) else f" trial {trial}")
+            for exercise, trial in zip(lost["exercise"], lost["trial"], strict=True)
+        ]
+        named = ", ".join(things[:_NAMED]) + (", …" if len(things) > _NAMED else "")
+        rows.append(
+            (patient, check, "ratings.tsv", f"rater {rater}", f"{len(own)} ratings",
+             f"{len(own) - len(lost)}; missing: {named}")
+        )  # fmt: skip
+    return rows

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
-from swaystride.stats.reliability import ReliabilityForm
+if TYPE_CHECKING:  # the models take seconds to import, and tables need only the plan
+    from swaystride.stats.reliability import ReliabilityForm
 
 RatingLevel = Literal["per_trial", "per_exercise"]
 FeatureTransform = Literal["none", "log"]

@@ -199,7 +199,7 @@ def rated_units(
     >>> units.patient.tolist(), units.predict([[1, 1]]).round(9).tolist()
     ([0, 1, 1], [[2.0, 2.0, 5.0]])
     """
-    codes, labels = cluster_codes(patients)
+    codes, _ = cluster_codes(patients)
     x, y = np.asarray(predictors, dtype=float), np.asarray(ratings, dtype=float)
     rows = np.column_stack([codes, x])
     unique, inverse = np.unique(rows, axis=0, return_inverse=True)

@@ -17,6 +17,9 @@ LARGEST_ICC_BIAS: Final = 0.01
 #: In what share of the cohorts the participant-level interval must hold the mean of the cohorts.
 COVERAGE: Final = (0.90, 0.98)
 
+#: Printed quantities that simulated cohorts do not reach, and why.
+KNOWN_DEVIATIONS: Final[Mapping[str, str]] = {}
+
 RECOVERY_COLUMNS: Final = (
     "quantity",
     "check",

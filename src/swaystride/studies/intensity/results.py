@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
-from swaystride.stats.cluster_bootstrap import Scale, bootstrap_interval, cluster_resamples
+from swaystride.stats.cluster_bootstrap import Scale, bootstrap_interval, cluster_weights
 from swaystride.stats.grouping_factor import CodeArray, FloatArray
 from swaystride.stats.mixed_model import MixedModelFit
 from swaystride.studies.intensity.plan import RESULT_COLUMNS, IntensityPlan
@@ -81,68 +81,77 @@ def tested_effect(fit: MixedModelFit, term: str, plan: IntensityPlan) -> dict[st
     return dict(zip(table.columns, values, strict=True))
 
 
-def share_given(given: FloatArray, then: FloatArray, value: int, outcome: int) -> float:
-    """Share of `outcome` in one rating where the other one is `value`; NaN where it never is.
+def patient_weights(n_patients: int, plan: IntensityPlan) -> FloatArray:
+    """Draw how often each patient occurs in each resample of the patients.
+
+    The same draws serve every statistic. The rare resample that consists of one patient alone has
+    no variance between patients and is left out.
 
     Parameters
     ----------
-    given, then : array, shape (n,)
-        The two ratings.
-    value, outcome : int
-        What the first one is, and what is looked for in the second.
-
-    Examples
-    --------
-    >>> share_given(np.array([5.0, 5, 4]), np.array([5.0, 4, 5]), value=5, outcome=5)
-    0.5
-    """
-    chosen = given == value
-    return float((then[chosen] == outcome).mean()) if chosen.any() else float("nan")
-
-
-def participant_intervals(
-    statistics: Callable[[CodeArray], Mapping[str, float]],
-    patients: pd.Series,
-    estimates: Mapping[str, float],
-    scales: Mapping[str, Scale],
-    plan: IntensityPlan,
-) -> dict[str, tuple[float, float]]:
-    """Intervals of several statistics from one bootstrap over patients.
-
-    Parameters
-    ----------
-    statistics : callable
-        From row numbers to the statistics by name.
-    patients : Series
-        Patient of each row.
-    estimates : mapping of str to float
-        The statistics of all rows.
-    scales : mapping of str to str
-        Scale on which each interval is computed.
+    n_patients : int
     plan : IntensityPlan
 
     Returns
     -------
-    dict of str to tuple
-        Both limits, NaN where a statistic is undefined in many resamples.
+    array, shape (at most cluster_bootstrap_n, n_patients)
     """
-    if patients.nunique() < 2:
-        return dict.fromkeys(estimates, _UNKNOWN)
-    resamples = cluster_resamples(patients, plan.cluster_bootstrap_n, plan.cluster_bootstrap_seed)
-    drawn = [statistics(rows) for rows in resamples]
-    intervals = {}
-    for name, estimate in estimates.items():
-        values = np.array([draw[name] for draw in drawn])
-        draws = values[np.isfinite(values)]
-        undefined = 1.0 - len(draws) / len(drawn)
-        if undefined > _UNDEFINED_SHARE or not np.isfinite(estimate):
-            intervals[name] = _UNKNOWN
-            continue
-        intervals[name] = bootstrap_interval(
-            estimate,
-            draws,
-            n_clusters=patients.nunique(),
-            level=plan.confidence_level,
-            scale=scales[name],
-        )
-    return intervals
+    weights = cluster_weights(n_patients, plan.cluster_bootstrap_n, plan.cluster_bootstrap_seed)
+    several: FloatArray = weights[weights.max(axis=1) < n_patients].astype(float)
+    return several
+
+
+def participant_interval(
+    draws: FloatArray, estimate: float, scale: Scale, n_patients: int, plan: IntensityPlan
+) -> tuple[float, float]:
+    """Interval over patients of one statistic.
+
+    Parameters
+    ----------
+    draws : array, shape (n,)
+        The statistic on resamples of patients; NaN where it is undefined.
+    estimate : float
+        The statistic of all patients.
+    scale : {"identity", "fisher_z", "logit"}
+        Scale on which the interval is computed.
+    n_patients : int
+    plan : IntensityPlan
+
+    Returns
+    -------
+    tuple of float
+        Both limits, NaN where the statistic is undefined in many resamples.
+    """
+    defined = draws[np.isfinite(draws)]
+    if 1.0 - len(defined) / len(draws) > _UNDEFINED_SHARE or not np.isfinite(estimate):
+        return _UNKNOWN
+    interval = bootstrap_interval(
+        estimate, defined, n_clusters=n_patients, level=plan.confidence_level, scale=scale
+    )
+    return (interval.low, interval.high)
+
+
+def mean_draws(values: FloatArray, patients: CodeArray, weights: FloatArray) -> FloatArray:
+    """Mean of a column in resamples of patients.
+
+    Parameters
+    ----------
+    values : array, shape (n_rows,)
+    patients : array of int, shape (n_rows,)
+        Patient of each row, numbered as the columns of `weights`.
+    weights : array, shape (n, m)
+
+    Returns
+    -------
+    array, shape (n,)
+
+    Examples
+    --------
+    >>> values, patients = np.array([1.0, 3.0, 8.0]), np.array([0, 0, 1])
+    >>> mean_draws(values, patients, np.array([[1, 1], [2, 0]])).tolist()
+    [4.0, 2.0]
+    """
+    m = weights.shape[1]
+    sums = np.bincount(patients, weights=values, minlength=m)
+    means: FloatArray = (weights @ sums) / (weights @ np.bincount(patients, minlength=m))
+    return means

@@ -29,25 +29,19 @@ _TWO_INTERVALS: Final = (
     "were drawn at random."
 )
 
-#: Three decimals for people, more in the CSV: differences to the print are taken from it.
-_NUMBERS: Final[Mapping[str, str | int]] = {
-    **dict.fromkeys(
-        (
-            "estimate",
-            "value",
-            "r",
-            "ci_low",
-            "ci_high",
-            "participant_ci_low",
-            "participant_ci_high",
-        ),
-        "number:3:6",
-    ),
+_FORMATS: Final[Mapping[str, str | int]] = {
     "p": "p:6",
     "se": "number:4:7",
     "df": 1,
     "n": "integer",
 }
+
+
+def _numbers(*columns: str) -> dict[str, str | int]:
+    """Three decimals for people, more in the CSV: differences to the print are taken from it."""
+    limits = ("ci_low", "ci_high", "participant_ci_low", "participant_ci_high")
+    return {column: _FORMATS.get(column, "number:3:6") for column in (*columns, *limits, "n")}
+
 
 TABLE_STYLES: Final = {
     "table_3_1": TableStyle(
@@ -59,17 +53,17 @@ TABLE_STYLES: Final = {
         "Table 3.2. Linear relationship between the therapists' ratings and the difficulty of the "
         "exercise, one dimension at a time.",
         (_TWO_INTERVALS,),
-        _NUMBERS,
+        _numbers("estimate", "p", "se", "df"),
     ),
     "table_3_3": TableStyle(
         "Table 3.3. Marginal correlation of each feature of sway with the ratings of trials.",
         (_TWO_INTERVALS,),
-        _NUMBERS,
+        _numbers("r", "p"),
     ),
     "study3_text": TableStyle(
         "Numbers of the running text of chapter 3.",
         (_TWO_INTERVALS, "Shares and accuracies are in percent."),
-        _NUMBERS,
+        _numbers("value", "p", "se", "df"),
     ),
     "cohort": TableStyle(
         "Patients and therapists.",
@@ -94,9 +88,21 @@ TABLE_STYLES: Final = {
         {"variance": 4, "share": 3, "icc": 3},
     ),
     "prediction": TableStyle(
-        "Ratings predicted from sway: in sample, as printed, and for patients left out of the fit.",
-        ("Accuracies and shares are in percent.",),
-        {"in_sample": 3, "left_out": 3, "n": "integer"},
+        "Ratings predicted from sway and from self-ratings: in sample, as printed, and for patients "
+        "left out of the fit.",
+        (
+            "Percentages are shares of ratings; predicted_4_is_pt_5: of those predicted as 4, rated 5.",
+            "participant_ci: 95 % interval over patients; the prediction is fitted anew in each "
+            "resample.",
+        ),
+        {
+            **{
+                f"{kind}{end}": "number:3:6"
+                for kind in ("in_sample", "left_out")
+                for end in ("", "_participant_ci_low", "_participant_ci_high")
+            },
+            "n": "integer",
+        },
     ),
     "dropped_features": TableStyle(
         "Features that the prediction dropped because the others determine them.",

@@ -35,7 +35,7 @@ TEXT_QUANTITIES: Final = (
     "spearman_kinematics_vs_pt_per_exercise",
     "kinematics_predicts_pt_accuracy_per_trial_percent",
     "kinematics_predicts_pt_accuracy_per_exercise_percent",
-    "kinematics_5_agrees_per_exercise_percent",
+    "kinematics_5_agrees_with_pt_per_exercise_percent",
     "kinematics_4_is_pt_5_per_exercise_percent",
     "kinematics_4_is_pt_4_per_exercise_percent",
 )

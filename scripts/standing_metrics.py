@@ -1,13 +1,10 @@
-"""Compute the sway measures of every usable trial of one participant."""
+"""Compute the sway measures of every usable standing trial of one participant."""
 
 from pathlib import Path
 
-import pandas as pd
-
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
-from swaystride.recording import list_recordings, load_recording
-from swaystride.sway.trial_measures import TRIAL_MEASURES, MeasurementMethod, measure_trial
+from swaystride.sway.trial_measures import MeasurementMethod, measure_participant
 
 
 def main() -> None:
@@ -21,17 +18,9 @@ def main() -> None:
     method = from_mapping(
         MeasurementMethod, arguments.parameters["measurement"], place="analysis.measurement"
     )
-    rows = [
-        {
-            "participant": arguments.participant,
-            "trial": trial,
-            **measure_trial(load_recording(arguments.recordings, trial), method),
-        }
-        for trial in list_recordings(arguments.recordings)
-    ]
-    columns = ["participant", "trial", *TRIAL_MEASURES]
-    pd.DataFrame(rows, columns=columns).to_parquet(arguments.output, index=False)
-    print(f"{arguments.participant}: {len(rows)} trials measured")
+    measures = measure_participant(arguments.participant, arguments.recordings, method)
+    measures.to_parquet(arguments.output, index=False)
+    print(f"{arguments.participant}: {len(measures)} trials measured")
 
 
 if __name__ == "__main__":
