@@ -1,10 +1,10 @@
 # swaystride: `make` sets up the environment and builds every table and figure.
 #
-#   make              everything at published scale     make demo       the same in under a minute
+#   make              everything at published scale     make demo       the same in small
 #   make feedback     one study, or make intensity      make variants   every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
-#   make dry-run      what would be done                make benchmark  time and memory of the feedback study
+#   make dry-run      what would be done                make benchmark  time and memory of the studies
 #   make benchmark-models  mixed models beside other libraries (make peers installs them)
 #   make clean        remove results and generated data
 
@@ -43,15 +43,15 @@ validation: setup
 		|| { echo "validation: the values above are not within tolerance" >&2; exit 1; }
 
 benchmark: setup
-	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python scripts/benchmark_feedback.py --cores $(CORES)
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python scripts/benchmark_studies.py --cores $(CORES)
 
 benchmark-models: setup
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 python scripts/benchmark_mixed_models.py \
 		$(if $(REFERENCE),--reference "$(REFERENCE)")
 
-peers: setup .venv-peers/.complete
+peers: .venv-peers/.complete
 
-.venv-peers/.complete: requirements-peers.txt
+.venv-peers/.complete: requirements-peers.txt | .venv/.complete
 	@echo "setting up .venv-peers (once)"
 	@$(BIN)/python -m venv --clear .venv-peers
 	@.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers.txt

@@ -4,13 +4,24 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from swaystride.errors import RecordingError
 from swaystride.io.xsens_txt_writer import write_xsens_txt
 from swaystride.recording import make_recording
+from swaystride.sway.participant_import import (
+    ImportFiles,
+    import_participant,
+    read_quality_tables,
+)
 from swaystride.sway.trial_import import RecordingRules, import_trials, unusable
-from swaystride.sway.trial_measures import MeasurementMethod, measure_trial
+from swaystride.sway.trial_measures import (
+    TRIAL_MEASURES,
+    MeasurementMethod,
+    measure_participant,
+    measure_trial,
+)
 from swaystride.units import GRAVITY_M_S2
 
 RULES = RecordingRules(
@@ -156,3 +167,52 @@ def test_a_duplicate_packet_is_an_error_or_kept_once_with_a_finding(tmp_path):
     kept = import_trials(files, tmp_path, replace(RULES, duplicate_packets="keep_first"), {})
     assert kept.recordings["trial_01"].sizes["time"] == 3000
     assert kept.findings["check"].tolist() == ["duplicate_packet"]
+
+
+def write_trial(path, n_lost=0):
+    """A raw file of 30 s; the last packets may be lost."""
+    recording = standing()
+    acc, gyr = recording["acc"].to_numpy()[0], recording["gyr"].to_numpy()[0]
+    n = acc.shape[1] - n_lost
+    path.parent.mkdir(exist_ok=True)
+    write_xsens_txt(path, acc[:, :n], gyr[:, :n], rate_hz=100.0, first_packet=0)
+
+
+def test_a_participant_goes_from_a_table_of_trials_to_measures(tmp_path):
+    """Own rows only, the lab's reason, an exclusion by rule, and one row per usable trial."""
+    trials = pd.DataFrame(
+        [
+            ("P01", "b", "P01/b.txt", ""),
+            ("P02", "b", "P02/not_there.txt", ""),
+            ("P01", "a", "P01/a.txt", ""),
+            ("P01", "c", "P01/c.txt", ""),
+            ("P01", "d", "P01/not_there.txt", "fell ill"),
+        ],
+        columns=["participant", "trial", "file", "exclude"],
+    )
+    for name, n_lost in (("a", 0), ("b", 0), ("c", 500)):
+        write_trial(tmp_path / "P01" / f"{name}.txt", n_lost)
+    files = ImportFiles(tmp_path / "P01.nc", tmp_path / "f" / "P01.csv", tmp_path / "e" / "P01.csv")
+    for file in (files.findings, files.exclusions):
+        file.parent.mkdir()
+    imported = import_participant("P01", trials, tmp_path, RULES, files)
+    assert imported.summary == "4 trials, 2 usable, 2 excluded, 0 findings"
+    exclusions = read_quality_tables(tmp_path / "e", ["P01"])
+    assert exclusions[["participant", "trial"]].to_numpy().tolist() == [["P01", "c"], ["P01", "d"]]
+    assert exclusions["reason"].tolist() == ["data loss: trial too short", "fell ill"]
+    assert read_quality_tables(tmp_path / "f", ["P01"]).empty
+
+    measures = measure_participant("P01", files.recordings, METHOD)
+    assert list(measures.columns) == ["participant", "trial", *TRIAL_MEASURES]
+    assert measures["trial"].tolist() == ["a", "b"]
+    expected = measure_trial(imported.recordings["a"], METHOD)
+    assert measures["phi_rms"].tolist() == pytest.approx([expected["phi_rms"]] * 2, rel=1e-5)
+
+
+def test_a_participant_without_usable_trials_has_no_measures(tmp_path):
+    trials = pd.DataFrame(
+        [("P01", "a", "a.txt", "fell ill")], columns=["participant", "trial", "file", "exclude"]
+    )
+    files = ImportFiles(tmp_path / "P01.nc", tmp_path / "f.csv", tmp_path / "e.csv")
+    assert not import_participant("P01", trials, tmp_path, RULES, files).recordings
+    assert measure_participant("P01", files.recordings, METHOD).empty

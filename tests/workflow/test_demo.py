@@ -167,3 +167,4 @@ def test_a_changed_parameter_reruns_the_stages_that_use_it(demo):
         path.write_text(text, encoding="utf-8")
     assert planned["feedback_metrics"] == 6
     assert not {"feedback_simulate", "feedback_import"} & set(planned)
+    assert not [rule for rule in planned if rule.startswith("intensity")]
