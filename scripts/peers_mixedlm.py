@@ -21,7 +21,9 @@ def main() -> None:
     parser.add_argument("formula")
     parser.add_argument("--repeats", type=int, required=True)
     parser.add_argument("--responses", help="array of new outcomes, one per row (.npy)")
-    parser.add_argument("--limit-s", type=float, required=True, help="stop refits after this time")
+    parser.add_argument(
+        "--limit-s", type=float, required=True, help="stop repeating after this time"
+    )
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
     table = pd.read_csv(arguments.table)
@@ -30,6 +32,8 @@ def main() -> None:
         start = time.perf_counter()
         fit = mixedlm.lmer(arguments.formula, table, REML=True)
         seconds.append(time.perf_counter() - start)
+        if sum(seconds) > arguments.limit_s:
+            break
     answer = {"version": mixedlm.__version__, "seconds": seconds, "loglik": float(fit.logLik())}
     if arguments.responses:
         done, start = 0, time.perf_counter()

@@ -1,5 +1,6 @@
 """A lab's own cohort: bad files stop their participant with one line, the others go on."""
 
+import json
 import shutil
 
 import pandas as pd
@@ -8,19 +9,23 @@ import pytest
 PAGE = "results/my_lab/report.html"
 
 
-@pytest.fixture(scope="module")
-def lab(demo, new_checkout):
-    """The demo's raw files under a lab's name, in a checkout whose config names the cohort."""
-    sandbox = new_checkout("lab")
-    folder = sandbox.root / "data/raw/my_lab/feedback"
-    shutil.copytree(demo.root / "data/raw/synthetic_demo/feedback", folder)
+def as_lab(sandbox, demo, study):
+    """Put the demo's raw files of one study under a lab's name, and name the cohort."""
+    folder = sandbox.root / "data/raw/my_lab" / study
+    shutil.copytree(demo.root / "data/raw/synthetic_demo" / study, folder)
     shutil.rmtree(folder / "truth")
     path = sandbox.root / "config/config.yaml"
     text = path.read_text(encoding="utf-8").replace("cohort: synthetic\n", "cohort: my_lab\n")
     text = text.replace("  # my_lab:", "  my_lab:")
-    text = text.replace("studies: [feedback, intensity]", "studies: [feedback]")
+    text = text.replace("studies: [feedback, intensity]", f"studies: [{study}]")
     path.write_text(text, encoding="utf-8")
     return sandbox
+
+
+@pytest.fixture(scope="module")
+def lab(demo, new_checkout):
+    """A checkout whose cohort is the feedback study of a lab."""
+    return as_lab(new_checkout("lab"), demo, "feedback")
 
 
 def test_bad_recordings_are_named_and_the_others_finish(lab):
@@ -78,3 +83,40 @@ def test_a_participant_without_usable_trials_is_left_out_and_counted(lab):
     assert (table["n"] < 223 - 35).all()
     flow = (lab.root / "results/my_lab/feedback/quality/flow.json").read_text(encoding="utf-8")
     assert "no usable trial" in flow
+
+
+def test_a_lab_with_ratings(demo, new_checkout):
+    """Wide ratings are an error with the way out; what is missing is found, counted and kept."""
+    sandbox = as_lab(new_checkout("ratings"), demo, "intensity")
+    path = sandbox.root / "data/raw/my_lab/intensity/ratings.tsv"
+    ratings = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False)
+    wide = ratings.pivot_table(
+        index=["participant", "exercise", "trial"],
+        columns="rater",
+        values="rating",
+        aggfunc="first",
+    )
+    wide.to_csv(path, sep="\t")
+    frame = "results/my_lab/intensity/printed/models/ratings.parquet"
+    process = sandbox.snakemake("--quiet", "rules", "--", frame)
+    assert process.returncode != 0
+    assert "ratings.tsv: line 1: ratings are in wide form" in process.stdout
+    assert "Traceback" not in process.stdout
+
+    ratings.loc[ratings["rater"] == "self", "rating"] = ratings["rating"].where(
+        ratings["participant"] != "P02", ""
+    )
+    ratings.to_csv(path, sep="\t", index=False)
+    quality = "results/my_lab/intensity/quality"
+    process = sandbox.snakemake("--quiet", "rules", "--", frame, f"{quality}/findings.csv")
+    assert process.returncode == 0, process.stdout
+    findings = pd.read_csv(sandbox.root / quality / "findings.csv", keep_default_na=False)
+    missing = findings[findings["check"] == "missing_self_rating"]
+    assert missing["participant"].tolist() == ["P02"]
+    flow = json.loads((sandbox.root / quality / "flow.json").read_text(encoding="utf-8"))["flow"]
+    counts = {row["unit"]: (row["recorded"], row["analysed"]) for row in flow}
+    assert counts["trials"] == (120, 120)
+    assert counts["self-ratings of trials"] == (120, 90)
+    kept = pd.read_parquet(sandbox.root / frame)
+    assert kept["rating"].notna().all()
+    assert (kept["self_rating"].isna() == (kept["participant"] == "P02")).all()
