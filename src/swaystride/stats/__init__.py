@@ -22,7 +22,6 @@ __getattr__, __dir__, __all__ = lazy_exports(
         "two_way_icc": "reliability",
         "pearson": "correlation",
         "spearman": "correlation",
-        "marginal_correlation": "marginal_correlation",
         "cluster_weights": "cluster_bootstrap",
         "bootstrap_interval": "cluster_bootstrap",
         "resampled_fixed_effects": "clustered_mixed_model",
