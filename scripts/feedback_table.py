@@ -6,7 +6,6 @@ import pandas as pd
 
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
-from swaystride.presentation.table_files import write_table
 from swaystride.studies.feedback.claims import claims_table
 from swaystride.studies.feedback.design import read_design
 from swaystride.studies.feedback.model_results import collect
@@ -55,13 +54,9 @@ def main() -> None:
         "table_2_4": lambda: table_2_4(contrasts(), printed(), pd.read_csv(arguments.text)),
         "claims": lambda: claims_table(contrasts(), plan.significance_level),
     }
-    style = TABLE_STYLES[arguments.table]
-    write_table(
+    TABLE_STYLES[arguments.table].write(
         build[arguments.table](),
-        arguments.output.with_suffix(""),
-        caption=style.caption,
-        notes=style.notes,
-        formats=style.formats,
+        arguments.output,
         simulated=arguments.simulated,
     )
 

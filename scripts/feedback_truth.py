@@ -6,7 +6,6 @@ import pandas as pd
 
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
-from swaystride.presentation.table_files import write_table
 from swaystride.studies.feedback.design import model_variables, read_design
 from swaystride.studies.feedback.model_results import collect
 from swaystride.studies.feedback.plan import ModelPlan
@@ -33,13 +32,9 @@ def main() -> None:
     ratios = pd.read_csv(arguments.raw / "truth" / "variance_ratios.tsv", sep="\t")
     weights = dict(zip(ratios["feature"], ratios["variance_ratio"], strict=True))
     truth = true_effects(variables, expected, plan, weights)
-    style = TABLE_STYLES["truth"]
-    write_table(
+    TABLE_STYLES["truth"].write(
         table_truth(collect(arguments.models, "contrasts"), truth),
-        arguments.output.with_suffix(""),
-        caption=style.caption,
-        notes=style.notes,
-        formats=style.formats,
+        arguments.output,
         simulated=True,
     )
 

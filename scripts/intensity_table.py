@@ -6,7 +6,6 @@ import pandas as pd
 
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
-from swaystride.presentation.table_files import write_table
 from swaystride.studies.intensity import tables
 from swaystride.studies.intensity.claims import claims_table
 from swaystride.studies.intensity.design import read_design
@@ -56,13 +55,9 @@ def main() -> None:
         "coverage": coverage,
         "claims": lambda: claims_table(all_results(folder), plan.significance_level),
     }
-    style = TABLE_STYLES[arguments.table]
-    write_table(
+    TABLE_STYLES[arguments.table].write(
         build[arguments.table](),
-        arguments.output.with_suffix(""),
-        caption=style.caption,
-        notes=style.notes,
-        formats=style.formats,
+        arguments.output,
         simulated=arguments.simulated,
     )
 

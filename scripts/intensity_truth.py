@@ -5,7 +5,6 @@ from pathlib import Path
 import pandas as pd
 
 from swaystride.command_line import run_script, script_parser
-from swaystride.presentation.table_files import write_table
 from swaystride.studies.intensity.model_files import all_results
 from swaystride.studies.intensity.table_styles import TABLE_STYLES
 from swaystride.studies.intensity.truth import truth_table
@@ -18,13 +17,9 @@ def main() -> None:
     parser.add_argument("--population", type=Path, required=True)
     parser.add_argument("--output", type=Path, required=True)
     arguments = parser.parse_args()
-    style = TABLE_STYLES["truth"]
-    write_table(
+    TABLE_STYLES["truth"].write(
         truth_table(all_results(arguments.models), pd.read_csv(arguments.population, sep="\t")),
-        arguments.output.with_suffix(""),
-        caption=style.caption,
-        notes=style.notes,
-        formats=style.formats,
+        arguments.output,
         simulated=True,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 from project import Project
@@ -73,11 +74,7 @@ class IntensityRules(StandingRules):
 
     def table_models(self, wildcards: Any) -> list[str]:
         """Model files that one table needs."""
-        return [
-            file.format(cohort=wildcards.cohort, variant=wildcards.variant)
-            for block in TABLE_BLOCKS[wildcards.table]
-            for file in block_files(block)
-        ]
+        return self._models(wildcards, TABLE_BLOCKS[wildcards.table])
 
     def figure_files(self, wildcards: Any) -> list[str]:
         """Results that one figure needs."""
@@ -86,8 +83,12 @@ class IntensityRules(StandingRules):
 
     def all_models(self, wildcards: Any) -> list[str]:
         """All model files of the variant."""
+        return self._models(wildcards, MODEL_FILES)
+
+    def _models(self, wildcards: Any, blocks: Iterable[str]) -> list[str]:
+        """Files of some blocks of the analysis."""
         return [
             file.format(cohort=wildcards.cohort, variant=wildcards.variant)
-            for block in MODEL_FILES
+            for block in blocks
             for file in block_files(block)
         ]

@@ -26,12 +26,12 @@ from swaystride.simulate.intensity_population import population_values
 from swaystride.simulate.intensity_ratings import confuse, ordinal
 from swaystride.simulate.intensity_recordings import MEASURES, write_patient
 from swaystride.simulate.intensity_sway import (
-    recorded_duration_s,
     simulate_features,
     simulate_trial,
     sway_inputs_of,
     trial_generator,
 )
+from swaystride.simulate.standing_recordings import recorded_duration_s
 
 CONFIG = Path(__file__).parents[2] / "config" / "studies" / "intensity.yaml"
 

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from swaystride.simulate.intensity_exercises import EXERCISES
-from swaystride.simulate.intensity_parameters import IntensityCohort
+from swaystride.simulate.intensity_parameters import STUDY, IntensityCohort
 from swaystride.simulate.intensity_people import (
     PatientGroup,
     draw_ages,
@@ -24,9 +24,6 @@ from swaystride.simulate.intensity_ratings import (
     draw_rater_effects,
 )
 from swaystride.simulate.seeds import generator
-
-#: Name of the study in the keys of its random numbers.
-STUDY: Final = "intensity"
 
 #: Groups of patients, in the order of :func:`group_of`.
 GROUPS: Final = ("older_adult", "vestibular")

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import rankdata
 
 from swaystride.simulate.intensity_exercises import DIFFICULTY
 from swaystride.simulate.intensity_ratings import PatientTruth
+from swaystride.stats.correlation import spearman
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -94,7 +94,7 @@ def rating_statistics(rows: RatedRows) -> dict[str, float]:
     predicted = np.clip(np.round(_fitted(rows.rating, rows.own[:, None])), 1, 5)
     return {
         **values,
-        "spearman_self": rank_correlation(rows.own, rows.rating),
+        "spearman_self": spearman(rows.own, rows.rating).r,
         "mean_difference": float(difference.mean()),
         "difference_sd": float(difference.std(ddof=1)),
         "self_accuracy": float((predicted == rows.rating).mean()),
@@ -144,7 +144,7 @@ def prediction_statistics(rows: RatedRows, features: Array) -> dict[str, float]:
     predicted = _fitted(rows.rating, x)
     rounded = np.clip(np.round(predicted), 1, 5)
     return {
-        "spearman_sway": rank_correlation(predicted, rows.rating),
+        "spearman_sway": spearman(predicted, rows.rating).r,
         "sway_accuracy": float((rounded == rows.rating).mean()),
         "sway_5_is_5": _share(rounded, rows.rating, 5, 5),
         "sway_4_is_5": _share(rounded, rows.rating, 4, 5),
@@ -167,22 +167,6 @@ def variance_difference(patients: Sequence[PatientTruth], assigned: Sequence[Int
         given = patient.therapist_trial[:, :, raters].var(axis=1, ddof=1)
         parts.append((given - own[:, None]).ravel())
     return float(np.concatenate(parts).mean())
-
-
-def rank_correlation(x: Array, y: Array) -> float:
-    """Spearman's correlation.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-
-    Examples
-    --------
-    >>> rank_correlation(np.array([1.0, 2, 3]), np.array([1.0, 8, 9]))
-    1.0
-    """
-    a, b = (rankdata(values) - (len(x) + 1) / 2.0 for values in (x, y))
-    return float((a @ b) / np.sqrt((a @ a) * (b @ b)))
 
 
 def _pair_icc(rows: RatedRows) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from swaystride.configuration import from_mapping
 from swaystride.errors import ConfigurationError
@@ -20,6 +20,9 @@ from swaystride.simulate.intensity_truth import (
 from swaystride.simulate.loss_of_balance import LossOfBalance
 from swaystride.simulate.standing_model import StandingModel, TrialSettings
 from swaystride.simulate.worn_sensor import RadioLoss, SensorPlacement
+
+#: Name of the study in the keys of its random numbers.
+STUDY: Final = "intensity"
 
 
 @dataclass(frozen=True)

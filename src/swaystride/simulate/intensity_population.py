@@ -13,7 +13,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from swaystride.simulate.intensity_exercises import DIFFICULTY
-from swaystride.simulate.intensity_parameters import IntensityProtocol
+from swaystride.simulate.intensity_parameters import STUDY, IntensityProtocol
 from swaystride.simulate.intensity_ratings import (
     PatientTruth,
     draw_exercise_effects,
@@ -79,7 +79,7 @@ def _patient(
     population: IntensityPopulation, protocol: IntensityProtocol, seed: int, number: int
 ) -> PatientTruth:
     """One patient of the population, with exercise effects and therapists of its own."""
-    rng = generator(seed, "intensity", "population", str(number))
+    rng = generator(seed, STUDY, "population", str(number))
     return draw_patient(
         population,
         exercise_effects=draw_exercise_effects(population, rng),

@@ -9,17 +9,20 @@ import numpy as np
 import pandas as pd
 
 from swaystride.simulate.inertial_sensor import SensorUnit, draw_unit
-from swaystride.simulate.intensity_cohort import STUDY, IntensityTables, truth_of
-from swaystride.simulate.intensity_parameters import IntensityCohort
+from swaystride.simulate.intensity_cohort import IntensityTables, truth_of
+from swaystride.simulate.intensity_parameters import STUDY, IntensityCohort
 from swaystride.simulate.intensity_sway import (
     SwayTrial,
-    recorded_duration_s,
     simulate_trial,
     sway_inputs_of,
     trial_generator,
 )
 from swaystride.simulate.seeds import generator
-from swaystride.simulate.standing_recordings import true_measures, write_standing_recording
+from swaystride.simulate.standing_recordings import (
+    recorded_duration_s,
+    true_measures,
+    write_standing_recording,
+)
 
 #: Measures whose true values are kept, in the order of Table 3.3.
 MEASURES: Final = (

@@ -9,23 +9,21 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from swaystride.simulate.intensity_parameters import IntensityCohort
+from swaystride.simulate.intensity_parameters import STUDY, IntensityCohort
 from swaystride.simulate.intensity_ratings import PatientTruth
 from swaystride.simulate.intensity_truth import SwayLink
-from swaystride.simulate.sampling import filter_reach
+from swaystride.simulate.sampling import decimation_factor, filter_reach
 from swaystride.simulate.seeds import generator
 from swaystride.simulate.standing_body import StandingMotion, StandingParameters
 from swaystride.simulate.standing_model import TrialSettings
 from swaystride.simulate.standing_recordings import (
+    recorded_duration_s,
     standing_motion,
     true_loss_times,
     true_measures,
 )
 
 Array = NDArray[np.float64]
-
-#: Name of the study in the keys of its random numbers.
-STUDY: Final = "intensity"
 
 #: The intensity at which the parameters of the link are stated.
 _MIDDLE: Final = 3.0
@@ -238,20 +236,6 @@ def trial_generator(seed: int, participant: str, exercise: int, trial: int) -> n
     return generator(seed, STUDY, participant, f"exercise {exercise + 1:02d} trial {trial + 1}")
 
 
-def recorded_duration_s(motion: StandingMotion, trial: TrialSettings) -> float:
-    """Time from the first to the last sample of the recording of a motion.
-
-    Parameters
-    ----------
-    motion : StandingMotion
-        From :func:`swaystride.simulate.standing_recordings.standing_motion`.
-    trial : TrialSettings
-        Rates.
-    """
-    reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
-    return float((motion.angle_rad.shape[1] - 1 - 2 * reach) / motion.rate_hz)
-
-
 def _end_of_trial(
     losses: tuple[float, ...], cohort: IntensityCohort, rng: np.random.Generator
 ) -> tuple[float, str]:
@@ -272,7 +256,7 @@ def _shortened(motion: StandingMotion, trial: TrialSettings, duration_s: float) 
     """The first part of a motion, with what the anti-alias filter needs on both sides."""
     reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
     n_samples = replace(trial, duration_s=duration_s).n_samples
-    factor = round(trial.simulation_rate_hz / trial.rate_hz)
+    factor = decimation_factor(trial.simulation_rate_hz, trial.rate_hz)
     n = (n_samples - 1) * factor + 1 + 2 * reach
     return replace(
         motion,

@@ -110,6 +110,20 @@ def true_measures(motion: StandingMotion, trial: TrialSettings) -> dict[str, flo
     return trial.true_measures(*true_sway(motion, trial))
 
 
+def recorded_duration_s(motion: StandingMotion, trial: TrialSettings) -> float:
+    """Time from the first to the last sample of the recording of a motion.
+
+    Parameters
+    ----------
+    motion : StandingMotion
+        From :func:`standing_motion`.
+    trial : TrialSettings
+        Rates.
+    """
+    reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
+    return float((motion.angle_rad.shape[1] - 1 - 2 * reach) / motion.rate_hz)
+
+
 def true_loss_times(motion: StandingMotion, trial: TrialSettings) -> tuple[float, ...]:
     """Times of the losses of balance, counted from the first sample of the recording.
 
@@ -126,7 +140,7 @@ def true_loss_times(motion: StandingMotion, trial: TrialSettings) -> tuple[float
         In s, in order; only losses that begin between the first and the last sample.
     """
     reach = filter_reach(trial.simulation_rate_hz, trial.rate_hz)
-    last_s = (motion.angle_rad.shape[1] - 1 - 2 * reach) / motion.rate_hz
+    last_s = recorded_duration_s(motion, trial)
     times_s = (time_s - reach / motion.rate_hz for time_s in motion.loss_times_s)
     return tuple(time_s for time_s in times_s if 0.0 <= time_s <= last_s)
 

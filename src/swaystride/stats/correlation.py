@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 from scipy.special import ndtri, stdtr
-from scipy.stats import rankdata
 
 from swaystride.errors import ModelError
 from swaystride.stats.grouping_factor import FloatArray
@@ -98,7 +98,7 @@ def spearman(x: npt.ArrayLike, y: npt.ArrayLike, level: float = 0.95) -> Correla
     0.8
     """
     first, second = _checked(x, y)
-    return _correlation(rankdata(first), rankdata(second), level)
+    return _correlation(_ranks(first), _ranks(second), level)
 
 
 def _correlation(x: FloatArray, y: FloatArray, level: float) -> Correlation:
@@ -120,6 +120,12 @@ def _correlation(x: FloatArray, y: FloatArray, level: float) -> Correlation:
         p=float(2.0 * stdtr(n - 2, -abs(t))),
         n=n,
     )
+
+
+def _ranks(values: FloatArray) -> FloatArray:
+    """Ranks from 1, ties at their mean rank."""
+    ranks: FloatArray = pd.Series(values).rank().to_numpy()
+    return ranks
 
 
 def _unit(values: FloatArray) -> FloatArray:

@@ -11,17 +11,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Final, Literal, overload
+from typing import TYPE_CHECKING, Final, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-from scipy.stats import f as f_distribution
+from scipy.special import fdtrc, fdtri
 
 from swaystride.errors import ModelError
 from swaystride.stats.grouping_factor import FloatArray
-from swaystride.stats.mixed_model import MixedModelFit
-from swaystride.stats.mixed_refits import Seed
+
+if TYPE_CHECKING:  # a fit is only passed in; the models take long to import
+    from swaystride.stats.mixed_model import MixedModelFit
+    from swaystride.stats.mixed_refits import Seed
 
 ReliabilityForm = Literal["printed", "recommended"]
 
@@ -308,9 +310,9 @@ def _consistency(f: float, n: int, k: int, level: float) -> _Rows:
 def _ratio_rows(f: float, df1: int, df2: int, k: int, level: float) -> _Rows:
     """Single and average ICC of the form (F − 1)/(F + k − 1) and 1 − 1/F."""
     upper = 0.5 + level / 2.0
-    low = f / float(f_distribution.ppf(upper, df1, df2))
-    high = f * float(f_distribution.ppf(upper, df2, df1))
-    p = float(f_distribution.sf(f, df1, df2))
+    low = f / float(fdtri(df1, df2, upper))
+    high = f * float(fdtri(df2, df1, upper))
+    p = float(fdtrc(df1, df2, f))
     single = [(x - 1.0) / (x + k - 1.0) for x in (f, low, high)]
     average = [1.0 - 1.0 / x for x in (f, low, high)]
     return (
@@ -328,13 +330,13 @@ def _agreement(between: float, raters: float, error: float, n: int, k: int, leve
     top = df_error * (k * share * ratio + n * (1.0 + (k - 1) * share) - k * share) ** 2
     bottom = df1 * (k * share * ratio) ** 2 + (n * (1.0 + (k - 1) * share) - k * share) ** 2
     df2 = top / bottom
-    high_f = float(f_distribution.ppf(upper, df1, df2))
-    low_f = float(f_distribution.ppf(upper, df2, df1))
+    high_f = float(fdtri(df1, df2, upper))
+    low_f = float(fdtri(df2, df1, upper))
     spread = k * raters + (k * n - k - n) * error
     low = n * (between - high_f * error) / (high_f * spread + n * between)
     high = n * (low_f * between - error) / (spread + n * low_f * between)
     f = between / error
-    p = float(f_distribution.sf(f, df1, df_error))
+    p = float(fdtrc(df1, df_error, f))
     averages = [_of_average(x, k) for x in (icc, low, high)]
     return (
         [icc, f, df1, df_error, p, low, high],

@@ -8,6 +8,7 @@ from typing import Final
 
 import pandas as pd
 
+from swaystride.stats.reliability import reliability_class
 from swaystride.studies.intensity.plan import DIMENSIONS, FEATURES, RATING_LEVELS
 
 Values = Mapping[str, float]
@@ -33,9 +34,6 @@ class Claim:
 
 
 def _good(v: Values, p: Values, alpha: float) -> list[bool]:
-    # the models behind it take seconds to import
-    from swaystride.stats.reliability import reliability_class
-
     return [
         reliability_class(v[f"study3_text/icc_pt_{level}"]) == "good" for level in RATING_LEVELS
     ]

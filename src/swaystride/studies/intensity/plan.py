@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
-if TYPE_CHECKING:  # the models take seconds to import, and tables need only the plan
-    from swaystride.stats.reliability import ReliabilityForm
+from swaystride.stats.reliability import ReliabilityForm
 
 RatingLevel = Literal["per_trial", "per_exercise"]
 FeatureTransform = Literal["none", "log"]

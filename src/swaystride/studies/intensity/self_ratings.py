@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy.special import chdtri, stdtr, stdtrit
 
 from swaystride.errors import DesignError
 from swaystride.stats.cluster_bootstrap import cluster_codes
@@ -156,8 +156,8 @@ def _difference_sd(
     """Standard deviation of the differences, with the χ² interval of independent values."""
     values = pairs["difference"].to_numpy(dtype=float)
     n, sd = len(values), float(values.std(ddof=1))
-    tails = np.array([0.5 + plan.confidence_level / 2.0, 0.5 - plan.confidence_level / 2.0])
-    low, high = (sd * np.sqrt((n - 1) / stats.chi2.ppf(tails, n - 1))).tolist()
+    beyond = np.array([0.5 - plan.confidence_level / 2.0, 0.5 + plan.confidence_level / 2.0])
+    low, high = (sd * np.sqrt((n - 1) / chdtri(n - 1, beyond))).tolist()
     size = weights @ np.bincount(codes)
     centred = values - values.mean()
     around = mean_draws(centred**2, codes, weights) - mean_draws(centred, codes, weights) ** 2
@@ -239,7 +239,7 @@ def _variance_difference(ratings: pd.DataFrame, plan: IntensityPlan) -> dict[str
     difference = (variances["rating"] - variances["self_rating"]).to_numpy(dtype=float)
     n, mean = len(difference), float(difference.mean())
     se = float(difference.std(ddof=1) / np.sqrt(n))
-    half = float(stats.t.ppf(0.5 + plan.confidence_level / 2.0, n - 1)) * se
+    half = float(stdtrit(n - 1, 0.5 + plan.confidence_level / 2.0)) * se
     codes, labels = cluster_codes(variances["participant"])
     draws = mean_draws(difference, codes, patient_weights(len(labels), plan))
     return result_row(
@@ -248,7 +248,7 @@ def _variance_difference(ratings: pd.DataFrame, plan: IntensityPlan) -> dict[str
         n=n,
         se=se,
         df=n - 1,
-        p=float(2.0 * stats.t.sf(abs(mean) / se, n - 1)) if se > 0.0 else float("nan"),
+        p=float(2.0 * stdtr(n - 1, -abs(mean) / se)) if se > 0.0 else float("nan"),
         ci=(mean - half, mean + half),
         participant_ci=participant_interval(draws, mean, "identity", len(labels), plan),
     )

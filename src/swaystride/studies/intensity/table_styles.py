@@ -3,26 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Final
 
-
-@dataclass(frozen=True)
-class TableStyle:
-    """How one table is written.
-
-    Parameters
-    ----------
-    caption : str
-    notes : tuple of str
-    formats : mapping of str to str or int
-        See :func:`swaystride.presentation.number_format.parse_format`.
-    """
-
-    caption: str
-    notes: tuple[str, ...] = ()
-    formats: Mapping[str, str | int] = field(default_factory=dict)
-
+from swaystride.presentation.table_style import TableStyle
 
 _TWO_INTERVALS: Final = (
     "ci: interval of the printed model; participant_ci: 95 % interval over patients, who alone "
