@@ -19,6 +19,7 @@ FLOORS = {
     "stats": 2,
     "presentation": 2,
     "sway": 3,
+    "gait": 3,
     "simulate": 4,
     "studies": 5,
     "validation": 5,
@@ -116,7 +117,8 @@ def test_public_names_are_documented(name):
                 assert described, f"{name}.{member_name}: parameter {parameter} is not described"
 
 
-@pytest.mark.parametrize("package", ["swaystride.io", "swaystride.stats", "swaystride.sway"])
+@pytest.mark.parametrize("package", ["swaystride.io", "swaystride.stats", "swaystride.sway", "swaystride.gait"]
+)
 def test_lazy_exports_resolve_and_cost_nothing(package):
     module = importlib.import_module(package)
     for name in module.__all__:
@@ -126,7 +128,7 @@ def test_lazy_exports_resolve_and_cost_nothing(package):
 
 
 def test_importing_the_package_loads_no_heavy_library():
-    probe = "import sys, swaystride.sway, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
+    probe = "import sys, swaystride.sway, swaystride.gait, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
     answer = subprocess.run(
         [sys.executable, "-c", probe],
         capture_output=True,
