@@ -16,7 +16,8 @@ from swaystride.gait.epoch_smoother import (
 )
 from swaystride.gait.foot_methods import RECOMMENDED
 from swaystride.gait.levelling import level_quaternion, mean_directions
-from swaystride.gait.zero_velocity import find_zero_velocity
+from swaystride.gait.stillness import find_rests
+from swaystride.gait.zero_velocity import ZeroVelocity, find_zero_velocity
 
 
 @pytest.fixture
@@ -34,8 +35,9 @@ def noisy():
 def test_it_equals_the_sample_wise_smoother(noisy, vertical_sd):
     rate_hz, acc, gyr = noisy
     method = replace(RECOMMENDED, passes=1, gate=np.inf, stance_vertical_sd_m_s=vertical_sd)
-    found = find_zero_velocity(acc, gyr, rate_hz, method)
-    assert len(found.stances) == 2
+    rests = find_rests(acc, gyr, rate_hz, method)
+    stances = np.array([210, 320])  # in the middle of both
+    found = ZeroVelocity(rests, stances, np.zeros(acc.shape[1], dtype=bool))
     ours = smoothed_states(acc, gyr, rate_hz, found, method)
     epochs, is_rest = measured_epochs(found, rate_hz, method.rest_spacing_s)
     up = mean_directions(acc, epochs, 3)

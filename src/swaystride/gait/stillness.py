@@ -24,9 +24,6 @@ Index = NDArray[np.int64]
 
 #: Below this (rad/s) differences of stillness are noise of the sensor, not movement.
 _STILL_FLOOR_RAD_S: Final = 0.05
-#: A rest next to a stance counts like a stance of this stillness: between walking (0.1 rad/s) and
-#: running (1 rad/s).
-_REST_AS_STANCE_RAD_S: Final = 0.5
 #: Strides of one bout vary less than this around their median.
 _LONGEST_STRIDE_RATIO: Final = 1.4
 
@@ -116,8 +113,8 @@ def find_stances(
 
     A minimum of the logarithm of stillness counts if it rises to either side by the factor
     ``stance_ratio`` before it falls lower (within ``stance_context_s``), and if it lies in the
-    still part of these surroundings. Rests count there like an ordinary stance, because a running
-    foot is never as still as a standing one.
+    still part of these surroundings. Rests do not count there, because a running foot is never as
+    still as a standing one.
 
     Parameters
     ----------
@@ -150,6 +147,9 @@ def find_stances(
         acc_m_s2_per_rad_s=method.stillness_acc_m_s2_per_rad_s,
     )
     depth = -np.log(np.maximum(movement, _STILL_FLOOR_RAD_S))
+    # Below the floor the order is kept, so that two equally deep minima of one stance do not count
+    # as two.
+    depth -= 1e-6 * np.log(np.maximum(movement, 1e-3))
     around = 2 * round(method.stance_context_s * rate_hz) + 1
     # A longer stillness is a rest, found by itself; here it only costs time.
     minima, _ = find_peaks(
@@ -160,8 +160,8 @@ def find_stances(
     )
     least = minimum_filter1d(depth, around, mode="nearest")[minima]
     resting = _beside_rest(movement, acc_m_s2, gyr_rad_s, rate_hz, method)
-    stance_like = np.where(resting, np.minimum(depth, -np.log(_REST_AS_STANCE_RAD_S)), depth)
-    most = maximum_filter1d(stance_like, around, mode="nearest")[minima]
+    moving = np.where(resting, -np.inf, depth)
+    most = np.maximum(maximum_filter1d(moving, around, mode="nearest")[minima], depth[minima])
     is_stance = depth[minima] - least > method.stance_depth * (most - least)
     stances = np.asarray(minima[is_stance], dtype=np.int64)
     return stances[~_within_a_stride(stances, movement[stances])]
