@@ -40,7 +40,7 @@ def test_it_equals_the_sample_wise_smoother(noisy, vertical_sd):
     found = ZeroVelocity(rests, stances, np.zeros(acc.shape[1], dtype=bool))
     ours = smoothed_states(acc, gyr, rate_hz, found, method)
     epochs, is_rest = measured_epochs(found, rate_hz, method.rest_spacing_s)
-    up = mean_directions(acc, epochs, 3)
+    up = mean_directions(acc, epochs, round(0.5 * method.stillness_window_s * rate_hz))
     rotation, velocity, _ = smooth_every_sample(
         acc,
         gyr,
