@@ -1,11 +1,12 @@
 # swaystride: `make` sets up the environment and builds every table and figure.
 #
 #   make              everything at published scale     make demo       the same in small
-#   make feedback     one study, or make intensity      make variants   every variant of every study
+#   make feedback     one study (or intensity, imu_design)  make variants  every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
 #   make dry-run      what would be done                make benchmark  time and memory of the studies
 #   make benchmark-models  mixed models beside other libraries (make peers installs them)
+#   make benchmark-feet    foot trajectories beside vqf and gaitmap
 #   make clean        remove results and generated data
 
 SHELL := bash
@@ -20,7 +21,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback intensity variants validation benchmark benchmark-models peers recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback intensity imu_design variants validation benchmark benchmark-models benchmark-feet peers recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -33,6 +34,9 @@ feedback: setup
 
 intensity: setup
 	@$(SNAKEMAKE) -- intensity
+
+imu_design: setup
+	@$(SNAKEMAKE) -- imu_design
 
 variants: setup
 	@$(SNAKEMAKE) -- variants
@@ -49,12 +53,21 @@ benchmark-models: setup
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 python scripts/benchmark_mixed_models.py \
 		$(if $(REFERENCE),--reference "$(REFERENCE)")
 
-peers: .venv-peers/.complete
+benchmark-feet: setup
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python scripts/benchmark_foot_trajectories.py
+
+peers: .venv-peers/.complete .venv-peers-gait/.complete
 
 .venv-peers/.complete: requirements-peers.txt | .venv/.complete
 	@echo "setting up .venv-peers (once)"
 	@$(BIN)/python -m venv --clear .venv-peers
 	@.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers.txt
+	@touch $@
+
+.venv-peers-gait/.complete: requirements-peers-gait.txt | .venv/.complete
+	@echo "setting up .venv-peers-gait (once)"
+	@$(BIN)/python -m venv --clear .venv-peers-gait
+	@.venv-peers-gait/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers-gait.txt
 	@touch $@
 
 recovery: setup

@@ -22,7 +22,15 @@ VALIDATION_DATASETS = (
     "standing_force_plate",
     "lumbar_imu_standing",
     "reliability_and_mixed_models",
+    "foot_imu_vicon",
+    "foot_imu_mocap_walk",
 )
+
+#: Of these, the foot recordings, which gaitmap computes too (``make peers``).
+FOOT_DATASETS = ("foot_imu_vicon", "foot_imu_mocap_walk")
+
+#: Marker of gaitmap's own environment, written when it is complete.
+GAITMAP_ENVIRONMENT = ".venv-peers-gait/.complete"
 
 
 class Project:
@@ -207,6 +215,29 @@ class Project:
         """Public data sets that are at hand."""
         folder = self.real_data_dir
         return [name for name in VALIDATION_DATASETS if folder and (folder / name).is_dir()]
+
+    def validation_files(self, dataset: str) -> list[str]:
+        """Everything that a data set's validation writes, from the words of the page."""
+        folder = f"results/validation/{dataset}"
+        files = [f"{folder}/checks.csv", f"{folder}/trials.csv"]
+        page = load_yaml(REPOSITORY / "workflow" / "report" / "validation.yaml")
+        for item in page["items"]:
+            if not item["file"].startswith(f"{dataset}/"):
+                continue
+            shown = f"results/validation/{item['file']}"
+            is_figure = item["kind"] == "figure"
+            files += [f"{shown}.{s}" for s in ("svg", "png", "pdf")] if is_figure else [shown]
+        return list(dict.fromkeys(files))
+
+    @property
+    def has_gaitmap(self) -> bool:
+        """Whether gaitmap's environment is set up."""
+        return (REPOSITORY / GAITMAP_ENVIRONMENT).is_file()
+
+    def gaitmap_table(self, dataset: str) -> list[str]:
+        """Table of gaitmap's results on a data set, if it is there or can be computed."""
+        table = f"results/peers/gaitmap_{dataset}.csv"
+        return [table] if self.has_gaitmap or (REPOSITORY / table).is_file() else []
 
     def scale(self, cohort: str) -> str:
         """Scale of a cohort; recordings of people have none."""

@@ -1,6 +1,6 @@
 # The library on public real recordings (real_data_dir, or SWAYSTRIDE_REAL_DATA).
 
-from project import VALIDATION_DATASETS
+from project import FOOT_DATASETS, VALIDATION_DATASETS
 
 
 rule validation_dataset:
@@ -15,7 +15,9 @@ rule validation_dataset:
     log:
         "logs/validation/{dataset}.log",
     wildcard_constraints:
-        dataset="|".join(VALIDATION_DATASETS),
+        dataset="|".join(
+            name for name in VALIDATION_DATASETS if name not in FOOT_DATASETS
+        ),
     conda:
         "../envs/swaystride.yaml"
     params:
@@ -26,14 +28,63 @@ rule validation_dataset:
         " --figure {output.svg:q} 2>&1 | tee {log:q}"
 
 
+# Foot recordings have several figures each: a rule for each data set, with the files of its page.
+for dataset in FOOT_DATASETS:
+
+    rule:
+        name:
+            f"validation_{dataset}"
+        input:
+            code("scripts/validation_feet.py"),
+            project.gaitmap_table(dataset),
+        output:
+            project.validation_files(dataset)[1:],
+            directory(f"results/validation/{dataset}/trial_figures"),
+            checks=project.validation_files(dataset)[0],
+        log:
+            f"logs/validation/{dataset}.log",
+        conda:
+            "../envs/swaystride.yaml"
+        params:
+            dataset=dataset,
+            real_data=str(project.real_data_dir),
+            gaitmap=[f"--gaitmap {table}" for table in project.gaitmap_table(dataset)],
+        shell:
+            "python scripts/validation_feet.py --dataset {params.dataset:q}"
+            " --real-data {params.real_data:q} {params.gaitmap} --checks {output.checks:q}"
+            " 2>&1 | tee {log:q}"
+
+
+# gaitmap in its own environment, once `make peers` has set it up; a table at hand is used as it is.
+if project.has_gaitmap:
+
+    rule validation_gaitmap:
+        input:
+            "scripts/peers_gaitmap.py",
+            "requirements-peers-gait.txt",
+        output:
+            "results/peers/gaitmap_{dataset}.csv",
+        log:
+            "logs/validation/gaitmap_{dataset}.log",
+        wildcard_constraints:
+            dataset="|".join(FOOT_DATASETS),
+        conda:
+            "../envs/swaystride.yaml"
+        params:
+            real_data=str(project.real_data_dir),
+        shell:
+            ".venv-peers-gait/bin/python scripts/peers_gaitmap.py {wildcards.dataset:q}"
+            " --real-data {params.real_data:q} --table {output:q} 2>&1 | tee {log:q}"
+
+
 rule validation:
     input:
         code("scripts/validation_page.py"),
-        expand(
-            "results/validation/{dataset}/{file}",
-            dataset=project.validation_datasets,
-            file=["checks.csv", "figure.svg", "figure.png"],
-        ),
+        [
+            file
+            for dataset in project.validation_datasets
+            for file in project.validation_files(dataset)
+        ],
         "workflow/report/validation.yaml",
     output:
         summary="results/validation/summary.csv",

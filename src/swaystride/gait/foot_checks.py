@@ -115,7 +115,7 @@ def foot_findings(
         add("no_rest_at_start", "a still foot at the start", "movement")
     if not len(rests) or rests[-1, 1] < n_samples:
         add("no_rest_at_end", "a still foot at the end", "movement")
-    if not len(zero_velocity.stances):
+    if not len(zero_velocity.stances) and len(rests) < 2:
         add("no_strides", "at least one stance between two swings", "none")
     if n_doubted:
         add(

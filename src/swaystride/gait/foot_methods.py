@@ -36,7 +36,7 @@ class FootMethod:
     rest_rate_rad_s, rest_acc_m_s2 : float
         Below both (root mean square in `rest_window_s`) a foot is at rest.
     rest_window_s, shortest_rest_s : float
-        Window of the judgement, and the shortest rest.
+        Window of the judgement, and the shortest rest (half of it at the ends of a recording).
     shortest_step_s : float
         No stance has its middle nearer to a rest.
     energy_window_s : float
@@ -129,7 +129,7 @@ RECOMMENDED: Final = FootMethod(
     rest_rate_rad_s=0.15,
     rest_acc_m_s2=1.0,
     rest_window_s=0.1,
-    shortest_rest_s=0.5,
+    shortest_rest_s=1.0,
     shortest_step_s=0.4,
     energy_window_s=0.02,
     energy_time_per_stride_s=0.025,

@@ -72,6 +72,9 @@ def find_rests(
 ) -> Index:
     """Spans of rest: first sample and the one after the last.
 
+    A rest inside the recording must be longer than the stillest stance of a slow walk; at either
+    end, where the foot may have rested for long before, half of that is enough.
+
     Parameters
     ----------
     acc_m_s2, gyr_rad_s : array_like, shape (3, n_samples)
@@ -102,8 +105,9 @@ def find_rests(
     )
     edges = np.flatnonzero(np.diff(np.r_[False, movement < method.rest_rate_rad_s, False]))
     spans = edges.reshape(-1, 2)
-    shortest = round(method.shortest_rest_s * rate_hz)
-    return np.asarray(spans[spans[:, 1] - spans[:, 0] >= shortest], dtype=np.int64)
+    at_an_end = (spans[:, 0] == 0) | (spans[:, 1] == movement.size)
+    shortest = method.shortest_rest_s * rate_hz * np.where(at_an_end, 0.5, 1.0)
+    return np.asarray(spans[spans[:, 1] - spans[:, 0] >= np.round(shortest)], dtype=np.int64)
 
 
 def find_stances(

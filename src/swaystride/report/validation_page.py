@@ -20,19 +20,19 @@ def render_validation_page(
     available: Sequence[str],
     skipped: Sequence[str],
 ) -> str:
-    """HTML of the validation page, one table and one figure for each data set at hand.
+    """HTML of the validation page: tables and figures of each data set at hand.
 
     Parameters
     ----------
     text_file : path or str
-        Words of the page; the items of a data set begin with its name.
+        Words of the page; the files of a data set lie in the folder of its name.
     results_dir : path or str
         Folder with one subfolder per data set.
     available, skipped : sequence of str
         Data sets that were at hand, and those that were not.
     """
     text = load_page_text(text_file)
-    items = tuple(item for item in text.items if item.id.removesuffix("_figure") in available)
+    items = tuple(item for item in text.items if item.file.split("/")[0] in available)
     notes = tuple(f"Skipped, because the recordings are not at hand: {name}." for name in skipped)
     content = study_content(
         replace(text, items=items, notes=(*text.notes, *notes)),
