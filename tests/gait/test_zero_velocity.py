@@ -89,11 +89,12 @@ def test_detection_does_not_depend_on_mounting_heading_or_side():
     turned = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
     a = walk(**WALKS["running"])
     b = walk(**WALKS["running"], mounting=turned)
+    rests = find_rests(a.acc, a.gyr, 200.0, RECOMMENDED)
     mirror = np.array([[1.0], [-1.0], [1.0]])
-    stances = find_stances(a.acc, a.gyr, 200.0, RECOMMENDED)
-    assert np.array_equal(stances, find_stances(b.acc, b.gyr, 200.0, RECOMMENDED))
+    stances = find_stances(a.acc, a.gyr, 200.0, RECOMMENDED, rests)
+    assert np.array_equal(stances, find_stances(b.acc, b.gyr, 200.0, RECOMMENDED, rests))
     assert np.array_equal(
-        stances, find_stances(mirror * a.acc, -mirror * a.gyr, 200.0, RECOMMENDED)
+        stances, find_stances(mirror * a.acc, -mirror * a.gyr, 200.0, RECOMMENDED, rests)
     )
 
 
@@ -111,5 +112,5 @@ def test_turns_of_swings_between_two_stances_are_no_stances():
     middle = own.stances[4] + 70
     acc[:, middle - 10 : middle + 10] = np.array([[0.0], [0.0], [9.80665]])
     gyr[:, middle - 10 : middle + 10] = np.array([[0.0], [1.5], [0.0]])
-    found = find_stances(acc, gyr, 200.0, RECOMMENDED)
+    found = find_stances(acc, gyr, 200.0, RECOMMENDED, find_rests(acc, gyr, 200.0, RECOMMENDED))
     assert np.abs(found - middle).min() > 20

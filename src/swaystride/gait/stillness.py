@@ -111,7 +111,7 @@ def find_rests(
 
 
 def find_stances(
-    acc_m_s2: ArrayLike, gyr_rad_s: ArrayLike, rate_hz: float, method: FootMethod
+    acc_m_s2: ArrayLike, gyr_rad_s: ArrayLike, rate_hz: float, method: FootMethod, rests: Index
 ) -> Index:
     """Stillest sample of every stance, rests included as one.
 
@@ -129,6 +129,8 @@ def find_stances(
     method : FootMethod
         ``stillness_window_s``, ``stillness_acc_m_s2_per_rad_s``, ``stance_ratio``,
         ``stance_depth``, ``stance_context_s``.
+    rests : ndarray of int, shape (n_rests, 2)
+        As from :func:`find_rests`.
 
     Returns
     -------
@@ -140,7 +142,7 @@ def find_stances(
     >>> phase = 2 * np.pi * np.arange(1000) / 200.0
     >>> gyr = np.zeros((3, 1000)); gyr[1] = 4.0 * (1.0 - np.cos(phase))
     >>> acc = np.tile([[0.0], [0.0], [9.80665]], 1000)
-    >>> find_stances(acc, gyr, 200.0, RECOMMENDED).tolist()
+    >>> find_stances(acc, gyr, 200.0, RECOMMENDED, np.empty((0, 2), dtype=int)).tolist()
     [200, 400, 600, 800]
     """
     movement = stillness_rad_s(
@@ -163,7 +165,7 @@ def find_stances(
         plateau_size=(1, max(around // 2, 1)),
     )
     least = minimum_filter1d(depth, around, mode="nearest")[minima]
-    resting = _beside_rest(movement, acc_m_s2, gyr_rad_s, rate_hz, method)
+    resting = _beside_rest(movement, rests, method)
     moving = np.where(resting, -np.inf, depth)
     most = np.maximum(maximum_filter1d(moving, around, mode="nearest")[minima], depth[minima])
     is_stance = depth[minima] - least > method.stance_depth * (most - least)
@@ -185,14 +187,12 @@ def _within_a_stride(stances: Index, movement: Array) -> NDArray[np.bool_]:
     return flags
 
 
-def _beside_rest(
-    movement: Array, acc: ArrayLike, gyr: ArrayLike, rate_hz: float, method: FootMethod
-) -> NDArray[np.bool_]:
+def _beside_rest(movement: Array, rests: Index, method: FootMethod) -> NDArray[np.bool_]:
     """Flag rests together with their edges, in which movement has not yet tripled."""
     slow = movement < method.stance_ratio * method.rest_rate_rad_s
     edges = np.flatnonzero(np.diff(np.r_[False, slow, False])).reshape(-1, 2)
     inside = np.zeros(movement.size, dtype=np.bool_)
-    for first, stop in find_rests(acc, gyr, rate_hz, method):
+    for first, stop in rests:
         own = np.searchsorted(edges[:, 0], (first + stop) // 2, side="right") - 1
         first_slow, stop_slow = edges[own] if own >= 0 else (first, stop)
         inside[min(first, first_slow) : max(stop, stop_slow)] = True

@@ -54,7 +54,7 @@ def find_zero_velocity(
     """
     gyr = np.asarray(gyr_rad_s, dtype=np.float64)
     rests = find_rests(acc_m_s2, gyr, rate_hz, method)
-    stillest = find_stances(acc_m_s2, gyr, rate_hz, method)
+    stillest = find_stances(acc_m_s2, gyr, rate_hz, method, rests)
     flags = rest_flags(gyr.shape[1], rests)
     # Between the middle of a stance and a rest lies a swing: what is stillest nearer to a rest
     # belongs to it, or is the slow end of a last swing.
