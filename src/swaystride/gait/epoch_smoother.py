@@ -11,7 +11,8 @@ are carried back into the strides.
 The noise of a step grows with the change of the signal from one sample to the next: what happens
 between two samples (the impact of the heel, sampled at 200 Hz) is unknown in proportion to it. So
 the smoother puts the correction of velocity where the impact was and not evenly over the stride.
-Where a channel is flattened, its sensor has reached its range; there the noise is larger too.
+Where a channel is flattened, its sensor has reached its range; there the most likely excess is put
+back, and the noise is larger too.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from swaystride.gait._strapdown_kernels import integrate_backward
 from swaystride.gait.foot_methods import FootMethod
 from swaystride.gait.levelling import level_quaternion, mean_directions
 from swaystride.gait.zero_velocity import ZeroVelocity
-from swaystride.signals.plateaus import plateau_variance
+from swaystride.signals.plateaus import restore_plateaus
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -112,7 +113,11 @@ def smoothed_states(
     """
     n, step_s = acc_m_s2.shape[1], 1.0 / rate_hz
     epochs, is_rest = measured_epochs(zero_velocity, rate_hz, method.rest_spacing_s)
+    acc_m_s2, acc_lost = restore_plateaus(acc_m_s2, least_level=LEAST_ACC_RANGE_M_S2)
+    gyr_rad_s, gyr_lost = restore_plateaus(gyr_rad_s, least_level=LEAST_GYR_RANGE_RAD_S)
     velocity_noise, angle_noise = step_noise(acc_m_s2, gyr_rad_s, rate_hz, method)
+    velocity_noise += step_s**2 * acc_lost
+    angle_noise += step_s**2 * gyr_lost
     reach = max(1, round(0.5 * method.stillness_window_s * rate_hz))
     up = mean_directions(acc_m_s2, epochs, reach)
     first = int(epochs[0])
@@ -160,7 +165,7 @@ def step_noise(
 ) -> tuple[Array, Array]:
     """Variance that each step adds to each component of velocity and of orientation.
 
-    ``σ² dt + (share · |x[k+1] − x[k]| · dt)² + plateau · dt²``.
+    ``σ² dt + (share · |x[k+1] − x[k]| · dt)²``; what a saturated sensor adds comes on top.
 
     Parameters
     ----------
@@ -176,17 +181,13 @@ def step_noise(
     """
     step_s = 1.0 / rate_hz
     noise = []
-    for signal, density, share, level in (
-        (acc_m_s2, method.acc_noise_m_s2_rthz, method.acc_step_share, LEAST_ACC_RANGE_M_S2),
-        (gyr_rad_s, method.gyr_noise_rad_s_rthz, method.gyr_step_share, LEAST_GYR_RANGE_RAD_S),
+    for signal, density, share in (
+        (acc_m_s2, method.acc_noise_m_s2_rthz, method.acc_step_share),
+        (gyr_rad_s, method.gyr_noise_rad_s_rthz, method.gyr_step_share),
     ):
         change = np.diff(signal, axis=1)
         variance = (share * step_s) ** 2 * np.einsum("ij,ij->j", change, change)
-        variance += density**2 * step_s
-        variance += step_s**2 * plateau_variance(
-            signal, least_level=level, excess_share=method.plateau_share
-        )
-        noise.append(variance)
+        noise.append(variance + density**2 * step_s)
     return noise[0], noise[1]
 
 

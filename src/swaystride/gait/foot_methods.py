@@ -56,8 +56,6 @@ class FootMethod:
         Noise of the smoother, all errors of the sensors that look white included.
     acc_step_share, gyr_step_share : float
         Share of the change from one sample to the next that integration may miss.
-    plateau_share : float
-        Share of the level of a flattened (saturated) run that may have been cut off.
     bias_walk_rad_s_rts : float
         Random walk of the gyroscope bias.
     start_bias_sd_rad_s : float
@@ -100,7 +98,6 @@ class FootMethod:
     gyr_noise_rad_s_rthz: float
     acc_step_share: float
     gyr_step_share: float
-    plateau_share: float
     bias_walk_rad_s_rts: float
     start_bias_sd_rad_s: float
     stance_velocity_sd_m_s: float
@@ -116,7 +113,7 @@ class FootMethod:
 
 
 #: The error-state smoother on the stillest instants. Evidence: see docs/methods.md, foot
-#: trajectories; five values were chosen on the public recordings `foot_imu_vicon`
+#: trajectories; four values were compared on the public recordings `foot_imu_vicon`
 #: (docs/decisions.md says which, and what leaving one trial out changes).
 RECOMMENDED: Final = FootMethod(
     zero_velocity="stillness",
@@ -143,12 +140,11 @@ RECOMMENDED: Final = FootMethod(
     gyr_noise_rad_s_rthz=0.01,
     acc_step_share=0.3,
     gyr_step_share=0.1,
-    plateau_share=0.05,
     bias_walk_rad_s_rts=1e-4,
     start_bias_sd_rad_s=0.01,
     stance_velocity_sd_m_s=0.02,
     stance_vertical_sd_m_s=0.05,
-    lever_height_m=0.10,
+    lever_height_m=0.11,
     lever_height_sd_m=0.02,
     rest_velocity_sd_m_s=0.005,
     rest_rate_sd_rad_s=0.0035,

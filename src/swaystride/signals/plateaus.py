@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 #: A run counts as flattened if it lies above this share of the largest value of its channel …
 _LEAST_SHARE: Final = 0.85
@@ -15,17 +16,21 @@ _LEAST_SHARE: Final = 0.85
 _LARGEST_STEP_SHARE: Final = 0.01
 #: … for at least so many steps: a smooth peak sampled at its top has fewer equal neighbours.
 _FEWEST_STEPS: Final = 3
+#: … and if the flanks are steeper than the run by more than this factor: at the top of a smooth peak
+#: the steps grow in proportion to the distance, and the flanks are twice as steep as their mean.
+_EDGE_RATIO: Final = 5.0
+#: Half of the estimated excess is its standard deviation.
+_EXCESS_UNCERTAINTY: Final = 0.5
 
 
-def plateau_variance(
-    signal: ArrayLike, *, least_level: float, excess_share: float
-) -> NDArray[np.float64]:
-    """Variance of what a saturated sensor has not seen, for every step between two samples.
+def restore_plateaus(signal: ArrayLike, *, least_level: float) -> tuple[Array, Array]:
+    """Put back what a saturated sensor has most likely cut off, and say how uncertain that is.
 
-    A run of L flattened steps is taken to have lost an excess of standard deviation
-    ``excess_share · level`` that is the same for the whole run, so that its integral over the run
-    has the standard deviation ``excess_share · level · L``. Spread evenly, each step has the
-    variance ``L · (excess_share · level)²``. Channels add up.
+    A run of T flattened steps between two flanks of mean slope s (per step) is taken to hide a
+    parabola: ``s t (1 − t/T)`` above the plateau. Its mean s·T/6 is uncertain by half of itself, and
+    this error is the same for the whole run: its integral has the standard deviation T times that.
+    Spread evenly, each step has the variance T times its square. Channels add up. A smooth peak
+    that only looks flat has no edges and is left as it is.
 
     Parameters
     ----------
@@ -33,32 +38,37 @@ def plateau_variance(
         Without missing samples.
     least_level : float
         No sensor in question has a smaller range: flat signals below are stillness.
-    excess_share : float
-        See above.
 
     Returns
     -------
-    ndarray, shape (n_samples - 1,)
-        In squared units of the signal; nil outside flattened runs.
+    restored : ndarray, shape (n_channels, n_samples)
+        The signal itself, not a copy, if nothing is flattened.
+    variance : ndarray, shape (n_samples - 1,)
+        Of every step, in squared units of the signal; nil outside flattened runs.
 
     Examples
     --------
-    >>> peak = 10.0 * np.sin(np.linspace(0.0, np.pi, 60))[None, :]
-    >>> clipped = np.minimum(peak, 6.0)
-    >>> bool(plateau_variance(peak, least_level=4.0, excess_share=0.1).max() > 0.0)
+    >>> hidden = 10.0 * np.sin(np.linspace(0.0, np.pi, 200))[None, :]
+    >>> restored, variance = restore_plateaus(np.minimum(hidden, 7.0), least_level=4.0)
+    >>> lost = hidden.sum() - np.minimum(hidden, 7.0).sum()
+    >>> bool(abs(hidden.sum() - restored.sum()) < 0.25 * lost)
     True
-    >>> variance = plateau_variance(clipped, least_level=4.0, excess_share=0.1)
-    >>> int((variance > 0).sum()), float(variance.max().round(9))
-    (35, 12.6)
     """
     values = np.asarray(signal, dtype=np.float64)
+    restored = values
     variance = np.zeros(max(values.shape[-1] - 1, 0))
-    for channel in values:
-        for level, side in ((channel.max(initial=0.0), channel), (-channel.min(initial=0.0), None)):
-            if level >= least_level:
-                for first, stop in _flat_steps(-channel if side is None else side, float(level)):
-                    variance[first:stop] += (stop - first) * (excess_share * level) ** 2
-    return variance
+    for number, sign, runs in _flat_runs(values, least_level):
+        if restored is values:
+            restored = values.copy()
+        flank = sign * values[number]
+        for first, stop in runs.tolist():
+            steps = stop - first
+            slope = 0.5 * (_rise(flank, first, -1) + _rise(flank, stop, 1))
+            t = np.arange(steps + 1)
+            restored[number, first : stop + 1] += sign * slope * t * (1.0 - t / steps)
+            spread = _EXCESS_UNCERTAINTY * slope * steps / 6.0
+            variance[first:stop] += steps * spread**2
+    return restored, variance
 
 
 def flattened_share(signal: ArrayLike, *, least_level: float) -> float:
@@ -68,13 +78,40 @@ def flattened_share(signal: ArrayLike, *, least_level: float) -> float:
     ----------
     signal : array_like, shape (n_channels, n_samples)
     least_level : float
-        As in :func:`plateau_variance`.
+        As in :func:`restore_plateaus`.
     """
-    variance = plateau_variance(signal, least_level=least_level, excess_share=1.0)
-    return float(np.count_nonzero(variance) / max(variance.size, 1))
+    values = np.asarray(signal, dtype=np.float64)
+    flat = np.zeros(max(values.shape[-1] - 1, 0), dtype=np.bool_)
+    for _, _, runs in _flat_runs(values, least_level):
+        for first, stop in runs.tolist():
+            flat[first:stop] = True
+    return float(np.count_nonzero(flat) / max(flat.size, 1))
 
 
-def _flat_steps(values: Array, level: float) -> NDArray[np.int64]:
+def _rise(flank: Array, edge: int, step: int) -> float:
+    """Rise towards a plateau over the last step before it (`step` −1) or after it (1), if any.
+
+    The step next to the plateau is cut by it; the one before is not.
+    """
+    near, far = edge + step, edge + 2 * step
+    if not (0 <= far < len(flank)):
+        return 0.0
+    return max(float(flank[near] - flank[far]), 0.0)
+
+
+def _flat_runs(values: Array, least_level: float) -> list[tuple[int, float, Index]]:
+    """Channel, sign and runs (first and last sample) wherever something is flattened."""
+    found = []
+    for number, channel in enumerate(values):
+        for sign, level in ((1.0, channel.max(initial=0.0)), (-1.0, -channel.min(initial=0.0))):
+            if level >= least_level:
+                runs = _flat_steps(channel if sign > 0 else -channel, float(level))
+                if len(runs):
+                    found.append((number, sign, runs))
+    return found
+
+
+def _flat_steps(values: Array, level: float) -> Index:
     """First step and the one after the last of every flattened run near the largest value."""
     high = np.flatnonzero(values > _LEAST_SHARE * level)
     neighbours = np.diff(high) == 1
@@ -85,5 +122,12 @@ def _flat_steps(values: Array, level: float) -> NDArray[np.int64]:
     breaks = np.flatnonzero(np.diff(steps) > 1)
     first = steps[np.r_[0, breaks + 1]]
     stop = steps[np.r_[breaks, steps.size - 1]] + 1
-    runs = np.stack([first, stop], axis=1)
-    return np.asarray(runs[stop - first >= _FEWEST_STEPS], dtype=np.int64)
+    long = stop - first >= _FEWEST_STEPS
+    runs = np.stack([first[long], stop[long]], axis=1).astype(np.int64)
+    return runs[[_has_edges(values, *run) for run in runs.tolist()]] if len(runs) else runs
+
+
+def _has_edges(values: Array, first: int, stop: int) -> bool:
+    """Whether a run begins or ends abruptly, as no smooth peak does."""
+    inside = float(np.mean(np.abs(np.diff(values[first : stop + 1]))))
+    return max(_rise(values, first, -1), _rise(values, stop, 1)) > _EDGE_RATIO * inside

@@ -23,9 +23,9 @@ from swaystride.validation.summary import Check, reported
 
 #: The grid: values of RECOMMENDED that were compared on foot_imu_vicon, around the chosen ones.
 GRID: Final[Mapping[str, tuple[float, ...]]] = {
-    "lever_height_m": (0.08, 0.10, 0.12),
-    "plateau_share": (0.0, 0.05, 0.1),
+    "lever_height_m": (0.09, 0.11, 0.13),
     "acc_step_share": (0.2, 0.3, 0.4),
+    "gyr_step_share": (0.0, 0.1, 0.2),
 }
 
 
