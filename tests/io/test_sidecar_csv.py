@@ -96,6 +96,45 @@ def without(key: str) -> dict[str, Any]:
     return {k: v for k, v in SIDECAR.items() if k != key}
 
 
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(2, 60))
+def test_whole_numbers_lose_half_a_unit(
+    tmp_path_factory: pytest.TempPathFactory, seed: int, n: int
+) -> None:
+    path = tmp_path_factory.mktemp("whole") / "walk.csv"
+    rng = np.random.default_rng(seed)
+    acc, gyr = rng.normal(size=(2, 1, 3, n)) * [[[[15.0]]], [[[5.0]]]]
+    acc[..., n // 2], gyr[..., n // 2] = np.nan, np.nan
+    acc[..., [0, -1]], gyr[..., [0, -1]] = 9.8, 0.1
+    recording = make_recording(
+        rate_hz=1000.0, rate_source="argument", sensors=["foot"], acc_m_s2=acc, gyr_rad_s=gyr
+    )
+    write_sidecar_csv(path, recording, whole={"acc": "mg", "gyr": "mdeg/s"})
+    assert "." not in path.read_text().split("\n", 1)[1]
+    found = read_recording(path)
+    for name, quantity, unit in (
+        ("acc", "acceleration", "mg"),
+        ("gyr", "angular_rate", "mdeg/s"),
+    ):
+        np.testing.assert_allclose(
+            found[name].values,
+            recording[name].values,
+            rtol=0,
+            atol=0.5001 * FACTORS_TO_SI[quantity][unit],
+        )
+
+
+def test_whole_numbers_are_printed_as_pandas_would(tmp_path: Path) -> None:
+    acc = np.arange(-12.0, 12.0).reshape(1, 3, 8)
+    recording = make_recording(rate_hz=50.0, rate_source="argument", sensors=["foot"], acc_m_s2=acc)
+    write_sidecar_csv(tmp_path / "a.csv", recording, whole={"acc": "m/s^2"})
+    assert (tmp_path / "a.csv").read_text().splitlines()[:3] == [
+        "sample,foot_acc_x,foot_acc_y,foot_acc_z",
+        "0,-12,-4,4",
+        "1,-11,-3,5",
+    ]
+
+
 @pytest.mark.parametrize(
     ("sidecar", "message"),
     [

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from swaystride.simulate.inertial_sensor import MTX, SensorUnit, draw_unit, measure, trunk_signals
+from swaystride.simulate.inertial_sensor import (
+    MTX,
+    OPAL_HIGH_RANGE,
+    SensorUnit,
+    draw_unit,
+    measure,
+    trunk_signals,
+)
 from swaystride.simulate.sampling import filter_reach
 from swaystride.simulate.standing_body import StandingMotion, lean_angles_deg
 from swaystride.sway.angles import trunk_angles
@@ -15,7 +22,11 @@ from swaystride.units import GRAVITY_M_S2
 RATE = 1000.0
 IDEAL = SensorUnit(np.eye(3), np.eye(3), np.eye(3), np.zeros(3), np.zeros(3))
 NOISELESS = replace(
-    MTX, acc_noise_density_m_s2_rthz=0.0, gyr_noise_density_deg_s_rthz=0.0, adc_bits=32
+    MTX,
+    acc_noise_density_m_s2_rthz=0.0,
+    gyr_noise_density_deg_s_rthz=0.0,
+    acc_adc_bits=32,
+    gyr_adc_bits=32,
 )
 
 
@@ -177,3 +188,40 @@ def test_bias_scale_and_misalignment_enter_as_stated():
     unit = replace(IDEAL, gyr_sense=sense, gyr_bias_rad_s=np.array([0.1, 0.0, -0.1]))
     _, gyr = report(NOISELESS, unit, gyr=(1.0, 2.0, 3.0))
     np.testing.assert_allclose(gyr[:, 7], sense @ [1.0, 2.0, 3.0] + [0.1, 0.0, -0.1], atol=1e-6)
+
+
+def test_a_gyroscope_that_feels_accelerations_shows_them():
+    model = replace(
+        OPAL_HIGH_RANGE,
+        acc_noise_density_m_s2_rthz=0.0,
+        gyr_noise_density_deg_s_rthz=0.0,
+        acc_adc_bits=32,
+        gyr_adc_bits=32,
+    )
+    sensitivity = np.diag([0.1, 0.2, 0.3])
+    felt = replace(IDEAL, gyr_per_acc_s_m=sensitivity)
+    acc = np.array([[1.0], [2.0], [3.0]]) * np.ones((1, 4000))
+    shown = [
+        measure(
+            model,
+            unit,
+            acc_m_s2=acc,
+            gyr_rad_s=np.zeros((3, 4000)),
+            rate_hz=4096.0,
+            output_rate_hz=128.0,
+            rng=np.random.default_rng(0),
+        )[1]
+        for unit in (IDEAL, felt)
+    ]
+    np.testing.assert_allclose(shown[0], 0.0, atol=1e-6)
+    np.testing.assert_allclose(shown[1].T, [[0.1, 0.4, 0.9]] * shown[1].shape[1], atol=1e-6)
+
+
+def test_g_sensitivity_is_drawn_only_where_there_is_one():
+    draw = {"tilt_sd_deg": 0.0, "heading_sd_deg": 0.0}
+    assert draw_unit(MTX, **draw, rng=np.random.default_rng(1)).gyr_per_acc_s_m is None
+    units = [
+        draw_unit(OPAL_HIGH_RANGE, **draw, rng=np.random.default_rng(seed)) for seed in range(300)
+    ]
+    spread = np.std([u.gyr_per_acc_s_m for u in units]) * GRAVITY_M_S2
+    assert np.degrees(spread) == pytest.approx(OPAL_HIGH_RANGE.gyr_g_sensitivity_deg_s_g, rel=0.05)

@@ -48,3 +48,11 @@ def test_quantised_values_are_steps_within_the_range():
     assert values.max() == 2.0 - step
     inside = np.abs(np.linspace(-3.0, 3.0, 1001)) < 2.0 - step
     assert np.abs(values - np.linspace(-3.0, 3.0, 1001))[inside].max() <= step / 2 + 1e-12
+
+
+def test_the_bandwidth_is_where_half_of_the_amplitude_passes():
+    time = np.arange(0.0, 3.0, 1 / 4000)
+    for frequency, passes in ((100.0, 1.0), (250.0, 0.5), (400.0, 0.0)):
+        wave = np.cos(2 * np.pi * frequency * time)
+        out = anti_alias(wave, rate_hz=4000.0, output_rate_hz=1000.0, bandwidth_hz=250.0)
+        assert np.abs(out).max() == pytest.approx(passes, abs=0.01)

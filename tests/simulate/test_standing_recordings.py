@@ -66,7 +66,8 @@ IDEAL = replace(
     gyr_bias_sd_deg_s=0.0,
     scale_error=0.0,
     misalignment_sd_deg=0.0,
-    adc_bits=24,
+    acc_adc_bits=24,
+    gyr_adc_bits=24,
 )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -32,8 +32,12 @@ class SensorModel:
         Bound of the (uniform) relative scale error of each axis.
     misalignment_sd_deg : float
         Standard deviation of each axis' tilt towards each of the other two.
-    adc_bits : int
+    acc_adc_bits, gyr_adc_bits : int
         Bits over the full range.
+    bandwidth_hz : float, optional
+        Where the anti-alias filter is down by 6 dB; by default half the output rate.
+    gyr_g_sensitivity_deg_s_g : float
+        Standard deviation of what each axis of the gyroscope shows per g along each axis.
     """
 
     acc_range_m_s2: float
@@ -44,7 +48,10 @@ class SensorModel:
     gyr_bias_sd_deg_s: float
     scale_error: float
     misalignment_sd_deg: float
-    adc_bits: int
+    acc_adc_bits: int
+    gyr_adc_bits: int
+    bandwidth_hz: float | None = None
+    gyr_g_sensitivity_deg_s_g: float = 0.0
 
 
 #: Xsens MTx as in spec §9.1, table "Sensor errors". Ranges, gyro noise and the converter are from
@@ -58,12 +65,53 @@ MTX: Final = SensorModel(
     gyr_bias_sd_deg_s=0.5,
     scale_error=0.005,
     misalignment_sd_deg=0.3,
-    adc_bits=16,
+    acc_adc_bits=16,
+    gyr_adc_bits=16,
+)
+
+#: APDM Opal with its high-range accelerometer, spec §9.1, table "Sensor errors": ranges of Potter et
+#: al. 2019, Table 1; the rest are priors [M]. The bandwidth, half the sampling rate, is [N].
+OPAL_HIGH_RANGE: Final = SensorModel(
+    acc_range_m_s2=200.0 * GRAVITY_M_S2,
+    gyr_range_deg_s=2000.0,
+    acc_noise_density_m_s2_rthz=5e-3 * GRAVITY_M_S2,
+    gyr_noise_density_deg_s_rthz=0.025,
+    acc_bias_sd_m_s2=20e-3 * GRAVITY_M_S2,
+    gyr_bias_sd_deg_s=0.3,
+    scale_error=0.005,
+    misalignment_sd_deg=0.3,
+    acc_adc_bits=14,
+    gyr_adc_bits=16,
+    gyr_g_sensitivity_deg_s_g=0.05,
+)
+
+#: The custom sensor of Potter et al. 2019, Table 1: ranges. Noise as usual in parts of these ranges
+#: [M]; biases, scale, misalignment and g-sensitivity as for the Opal; the bandwidth a quarter of
+#: the sampling rate, as such parts filter at their highest output rate [N].
+FAST_FOOT_SENSOR: Final = SensorModel(
+    acc_range_m_s2=32.0 * GRAVITY_M_S2,
+    gyr_range_deg_s=4000.0,
+    acc_noise_density_m_s2_rthz=0.3e-3 * GRAVITY_M_S2,
+    gyr_noise_density_deg_s_rthz=0.02,
+    acc_bias_sd_m_s2=20e-3 * GRAVITY_M_S2,
+    gyr_bias_sd_deg_s=0.3,
+    scale_error=0.005,
+    misalignment_sd_deg=0.3,
+    acc_adc_bits=16,
+    gyr_adc_bits=16,
+    bandwidth_hz=250.0,
+    gyr_g_sensitivity_deg_s_g=0.05,
 )
 
 
 #: Sensor models by the name that a configuration gives.
 SENSOR_MODELS: Final = {"mtx": MTX}
+
+#: Models of sensors for feet, likewise.
+FOOT_SENSOR_MODELS: Final = {
+    "opal_high_range": OPAL_HIGH_RANGE,
+    "fast_foot_sensor": FAST_FOOT_SENSOR,
+}
 
 
 @dataclass(frozen=True)
@@ -78,6 +126,8 @@ class SensorUnit:
         Scale and misalignment: what the axes sense of a vector in the sensor frame.
     acc_bias_m_s2, gyr_bias_rad_s : ndarray, shape (3,)
         Turn-on biases.
+    gyr_per_acc_s_m : ndarray, shape (3, 3), optional
+        What the gyroscope shows (rad/s) per acceleration (m/s²) in the sensor frame.
     """
 
     r_sensor_from_body: Array
@@ -85,6 +135,7 @@ class SensorUnit:
     gyr_sense: Array
     acc_bias_m_s2: Array
     gyr_bias_rad_s: Array
+    gyr_per_acc_s_m: Array | None = None
 
 
 def trunk_signals(motion: StandingMotion, position_m: ArrayLike) -> tuple[Array, Array]:
@@ -167,13 +218,17 @@ def draw_unit(
         np.fill_diagonal(tilt, 0.0)
         scale = 1.0 + model.scale_error * rng.uniform(-1.0, 1.0, size=3)
         senses.append(scale[:, None] * (np.eye(3) + tilt))
-    return SensorUnit(
+    unit = SensorUnit(
         r_sensor_from_body=exp_map(mounting_deg * RAD_PER_DEG),
         acc_sense=senses[0],
         gyr_sense=senses[1],
         acc_bias_m_s2=model.acc_bias_sd_m_s2 * rng.standard_normal(3),
         gyr_bias_rad_s=model.gyr_bias_sd_deg_s * RAD_PER_DEG * rng.standard_normal(3),
     )
+    if model.gyr_g_sensitivity_deg_s_g == 0.0:
+        return unit
+    per_g = model.gyr_g_sensitivity_deg_s_g * RAD_PER_DEG * rng.standard_normal((3, 3))
+    return replace(unit, gyr_per_acc_s_m=per_g / GRAVITY_M_S2)
 
 
 def measure(
@@ -208,6 +263,7 @@ def measure(
         Multiples of the converter's step, within the range.
     """
     noise_factor = np.sqrt(output_rate_hz / 2.0)
+    sensitivity = unit.gyr_per_acc_s_m
     channels = (
         (
             acc_m_s2,
@@ -215,6 +271,7 @@ def measure(
             unit.acc_bias_m_s2,
             model.acc_range_m_s2,
             model.acc_noise_density_m_s2_rthz,
+            model.acc_adc_bits,
         ),
         (
             gyr_rad_s,
@@ -222,16 +279,24 @@ def measure(
             unit.gyr_bias_rad_s,
             model.gyr_range_deg_s * RAD_PER_DEG,
             model.gyr_noise_density_deg_s_rthz * RAD_PER_DEG,
+            model.gyr_adc_bits,
         ),
     )
     outputs = []
-    for ideal, sense, bias, full_scale, density in channels:
+    for ideal, sense, bias, full_scale, density, bits in channels:
         sensed = (sense @ unit.r_sensor_from_body) @ np.asarray(ideal) + bias[:, None]
+        if ideal is gyr_rad_s and sensitivity is not None:
+            sensed += (sensitivity @ unit.r_sensor_from_body) @ np.asarray(acc_m_s2)
         # The element saturates before its signal is filtered and sampled.
         np.clip(sensed, -full_scale, full_scale, out=sensed)
-        sampled = anti_alias(sensed, rate_hz=rate_hz, output_rate_hz=output_rate_hz)
+        sampled = anti_alias(
+            sensed,
+            rate_hz=rate_hz,
+            output_rate_hz=output_rate_hz,
+            bandwidth_hz=model.bandwidth_hz,
+        )
         sampled += density * noise_factor * rng.standard_normal(sampled.shape)
-        outputs.append(quantise(sampled, full_scale=full_scale, bits=model.adc_bits))
+        outputs.append(quantise(sampled, full_scale=full_scale, bits=bits))
     return outputs[0], outputs[1]
 
 

@@ -86,10 +86,16 @@ def decimation_factor(rate_hz: float, output_rate_hz: float) -> int:
     return factor
 
 
-def anti_alias(signal: ArrayLike, *, rate_hz: float, output_rate_hz: float) -> Array:
+def anti_alias(
+    signal: ArrayLike,
+    *,
+    rate_hz: float,
+    output_rate_hz: float,
+    bandwidth_hz: float | None = None,
+) -> Array:
     """Low-pass and decimate along the last axis, without delay and without end effects.
 
-    A linear-phase FIR filter (Kaiser, 60 dB, −6 dB at half the output rate), of which only
+    A linear-phase FIR filter (Kaiser, 60 dB, −6 dB at the bandwidth), of which only
     outputs are returned that rest on given samples: output j is centred on input
     ``reach + j · factor``.
 
@@ -99,6 +105,9 @@ def anti_alias(signal: ArrayLike, *, rate_hz: float, output_rate_hz: float) -> A
         At least ``2 · reach + 1`` samples, see :func:`filter_reach`.
     rate_hz, output_rate_hz : float
         Rates; an integer ratio.
+    bandwidth_hz : float, optional
+        Where the filter is down by 6 dB; by default half the output rate. It has no effect on a
+        signal that is not decimated.
 
     Returns
     -------
@@ -115,7 +124,8 @@ def anti_alias(signal: ArrayLike, *, rate_hz: float, output_rate_hz: float) -> A
         reach = FILTER_REACH_SAMPLES
         return values[..., reach:-reach].copy()
     reach = factor * FILTER_REACH_SAMPLES
-    taps = firwin(2 * reach + 1, output_rate_hz / 2.0, window=("kaiser", 5.65), fs=rate_hz)
+    edge_hz = output_rate_hz / 2.0 if bandwidth_hz is None else bandwidth_hz
+    taps = firwin(2 * reach + 1, edge_hz, window=("kaiser", 5.65), fs=rate_hz)
     filtered = upfirdn(taps, values, down=factor, axis=-1)
     n_output = (values.shape[-1] - 2 * reach - 1) // factor + 1
     skipped = 2 * FILTER_REACH_SAMPLES  # outputs of which the filter begins before the signal
