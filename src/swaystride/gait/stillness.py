@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.signal import find_peaks
 
+from swaystride.gait.cadence import local_stride_s
 from swaystride.gait.foot_methods import FootMethod
 from swaystride.units import GRAVITY_M_S2
 
@@ -24,8 +25,10 @@ Index = NDArray[np.int64]
 
 #: Below this (rad/s) differences of stillness are noise of the sensor, not movement.
 _STILL_FLOOR_RAD_S: Final = 0.05
-#: Strides of one bout vary less than this around their median.
-_LONGEST_STRIDE_RATIO: Final = 1.4
+#: Two stances of a foot are further apart than this share of a stride.
+_LEAST_STRIDE_SHARE: Final = 0.6
+#: The mean squared rate over this window says how fast a candidate turns.
+_TURN_WINDOW_S: Final = 0.03
 
 
 def stillness_rad_s(
@@ -115,10 +118,11 @@ def find_stances(
 ) -> Index:
     """Stillest sample of every stance, rests included as one.
 
-    A minimum of the logarithm of stillness counts if it rises to either side by the factor
-    ``stance_ratio`` before it falls lower (within ``stance_context_s``), and if it lies in the
-    still part of these surroundings. Rests do not count there, because a running foot is never as
-    still as a standing one.
+    A minimum of the logarithm of stillness is a candidate if it rises to either side by the factor
+    ``stance_ratio`` before it falls lower (within ``stance_context_s``). It counts if it lies nearer
+    to the stillest candidate around it than to the least still instant, and if no candidate within a
+    stride turns less. Rests are no candidates, because a running foot is never as still as a
+    standing one.
 
     Parameters
     ----------
@@ -165,38 +169,42 @@ def find_stances(
         plateau_size=(1, max(around // 2, 1)),
     )
     least = minimum_filter1d(depth, around, mode="nearest")[minima]
-    resting = _beside_rest(movement, rests, method)
-    moving = np.where(resting, -np.inf, depth)
-    most = np.maximum(maximum_filter1d(moving, around, mode="nearest")[minima], depth[minima])
-    is_stance = depth[minima] - least > method.stance_depth * (most - least)
-    stances = np.asarray(minima[is_stance], dtype=np.int64)
-    return stances[~_within_a_stride(stances, movement[stances])]
-
-
-def _within_a_stride(stances: Index, movement: Array) -> NDArray[np.bool_]:
-    """Flag candidates between two stiller ones that are one ordinary stride apart: turns of swings.
-
-    Ordinary is the median interval of the recording.
-    """
-    flags = np.zeros(stances.size, dtype=np.bool_)
-    if stances.size < 3:
-        return flags
-    apart = stances[2:] - stances[:-2]
-    stiller = np.maximum(movement[2:], movement[:-2]) < movement[1:-1]
-    flags[1:-1] = stiller & (apart < _LONGEST_STRIDE_RATIO * np.median(np.diff(stances)))
-    return flags
-
-
-def _beside_rest(movement: Array, rests: Index, method: FootMethod) -> NDArray[np.bool_]:
-    """Flag rests together with their edges, in which movement has not yet tripled."""
-    slow = movement < method.stance_ratio * method.rest_rate_rad_s
-    edges = np.flatnonzero(np.diff(np.r_[False, slow, False])).reshape(-1, 2)
-    inside = np.zeros(movement.size, dtype=np.bool_)
+    still = np.full(movement.size, -np.inf)
+    still[minima] = depth[minima]
     for first, stop in rests:
-        own = np.searchsorted(edges[:, 0], (first + stop) // 2, side="right") - 1
-        first_slow, stop_slow = edges[own] if own >= 0 else (first, stop)
-        inside[min(first, first_slow) : max(stop, stop_slow)] = True
-    return inside
+        still[first:stop] = -np.inf
+    most = np.maximum(maximum_filter1d(still, around, mode="nearest")[minima], depth[minima])
+    is_stance = depth[minima] - least > method.stance_depth * (most - least)
+    candidates = np.asarray(minima[is_stance], dtype=np.int64)
+    return _one_per_stride(candidates, movement, gyr_rad_s, rate_hz)
+
+
+def _one_per_stride(
+    candidates: Index, movement: Array, gyr_rad_s: ArrayLike, rate_hz: float
+) -> Index:
+    """Drop candidates within 0.6 local stride times of one that turns less: turns of swings.
+
+    At the turn of a swing a foot may be as still as in the stance of a sprint, but it turns faster.
+    Where there is no rhythm nothing is dropped.
+    """
+    centre_s, stride_s = local_stride_s(movement, rate_hz)
+    known = np.isfinite(stride_s)
+    if candidates.size < 2 or not known.any():
+        return candidates
+    nearest = np.abs(candidates[:, None] / rate_hz - centre_s[None, :]).argmin(axis=1)
+    apart = np.where(known[nearest], _LEAST_STRIDE_SHARE * stride_s[nearest] * rate_hz, 0.0)
+    gyr = np.asarray(gyr_rad_s, dtype=np.float64)
+    reach = int(0.5 * _TURN_WINDOW_S * rate_hz)
+    window = candidates[:, None] + np.arange(-reach, reach + 1)
+    window = np.clip(window, 0, gyr.shape[1] - 1)
+    turning = np.sum(gyr[:, window] ** 2, axis=(0, 2))
+    kept = np.ones(candidates.size, dtype=np.bool_)
+    for this in np.argsort(turning, kind="stable"):
+        if kept[this]:
+            near = np.abs(candidates - candidates[this]) < apart[this]
+            near[this] = False
+            kept &= ~near
+    return candidates[kept]
 
 
 def _odd_samples(duration_s: float, rate_hz: float) -> int:
