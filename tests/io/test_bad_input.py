@@ -127,7 +127,7 @@ CASES = {
     "g given as m/s²": (
         HEADER + rows(z=1.0),
         "a.txt: acc: acceleration unit; "
-        "expected a median |acc| from 4 to 40 m/s² (about 9.8 at rest); "
+        "expected a median |acc| from 4 to 70 m/s² (about 9.8 at rest); "
         "found a median of 1.025 m/s²: values look like g, not m/s²",
     ),
     "deg/s given as rad/s": (
@@ -162,8 +162,9 @@ CASES = {
     ),
     "unknown format": (
         "\nhello world\n1 2 3\n",
-        "a.txt: first line: unknown format; expected one of CSV with a JSON sidecar, APDM CSV, "
-        "text with an acquisition frequency, Xsens MT Manager TXT; found 'hello world'",
+        "a.txt: first line: unknown format; expected one of CSV with a JSON sidecar, "
+        "Motion-BIDS, APDM CSV, Polar Sensor Logger ACC, text with an acquisition frequency, "
+        "Xsens MT Manager TXT, APDM Opal HDF5; found 'hello world'",
     ),
 }
 

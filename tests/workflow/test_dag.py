@@ -25,10 +25,20 @@ INTENSITY = {
     "intensity_population": 1,
     "intensity_truth": 1,
 }
+IMU_DESIGN = {
+    "imu_design_design": 1,
+    "imu_design_quality": 1,
+    "imu_design_observations": 1,
+    "imu_design_models": 1,
+    "imu_design_table": 13,
+    "imu_design_figure": 9,
+    "imu_design_raw_figure": 2,
+    "imu_design_truth": 1,
+}
 SHARED = {
-    "parameter_sections": 5 + 4,
-    "study_parameters": 2,
-    "study_page": 2,
+    "parameter_sections": 5 + 4 + 9,
+    "study_parameters": 3,
+    "study_page": 3,
     "cohort_page": 1,
     "provenance": 1,
     "all": 1,
@@ -40,37 +50,49 @@ def per_participant(study, n):
 
 
 @pytest.mark.parametrize(
-    ("cohort", "n_feedback", "n_intensity"), [("synthetic", 19, 10), ("synthetic_demo", 6, 4)]
+    ("cohort", "n_feedback", "n_intensity", "n_imu_design"),
+    [("synthetic", 19, 10, 6), ("synthetic_demo", 6, 4, 2)],
 )
-def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity):
+def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_imu_design):
     planned = sandbox.planned("--config", f"cohort={cohort}", "--", "all")
     assert planned == {
         **FEEDBACK,
         **INTENSITY,
+        **IMU_DESIGN,
         **SHARED,
         **per_participant("feedback", n_feedback),
         **per_participant("intensity", n_intensity),
+        **per_participant("imu_design", n_imu_design),
+        "imu_design_stride_errors": n_imu_design,
     }
     assert sum(planned.values()) < 300
 
 
-@pytest.mark.parametrize(("study", "other"), [("feedback", "intensity"), ("intensity", "feedback")])
-def test_one_study_is_built_without_the_other_and_the_page_of_the_cohort(sandbox, study, other):
+STUDIES = ("feedback", "intensity", "imu_design")
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_one_study_is_built_without_the_others_and_the_page_of_the_cohort(sandbox, study):
     planned = sandbox.planned(study)
     assert "cohort_page" not in planned
     assert planned["study_page"] == 1
-    assert not [rule for rule in planned if rule.startswith(other)]
+    others = tuple(name for name in STUDIES if name != study)
+    assert not [rule for rule in planned if rule.startswith(others)]
 
 
 def test_variants_share_the_stages_before_their_first_own(sandbox):
     planned = sandbox.planned("variants")
-    assert planned["study_page"] == 3 + 2
+    assert planned["study_page"] == 3 + 2 + 2
     assert planned["feedback_import"] == 19
     # printed and recommended measure anew; n_coding_reset shares the measures of printed
     assert planned["feedback_metrics"] == 2 * 19
     assert planned["feedback_model"] == 3 * 6
     assert planned["intensity_import"] == 10
     assert planned["intensity_metrics"] == 2 * 10
+    assert planned["imu_design_import"] == 6
+    assert planned["imu_design_metrics"] == 2 * 6
+    # the errors of all methods stand on every page
+    assert planned["imu_design_stride_errors"] == 6
 
 
 def test_one_table_can_be_asked_for_alone(sandbox):

@@ -102,7 +102,7 @@ def test_provenance_lists_every_result_with_its_hash(demo):
     shown = [name for name in on_disk if "/tables/" in name or "/figures/" in name]
     assert len(shown) > 40
     assert set(shown) <= set(listed)
-    assert sum(name.endswith(".nc") for name in listed) == 6 + 4
+    assert sum(name.endswith(".nc") for name in listed) == 6 + 4 + 2
     assert any(row["path"].endswith("P01_01.txt") for row in provenance["inputs"])
     assert provenance["seed"] == 1
 
@@ -141,6 +141,14 @@ def test_an_edit_reruns_the_dependents_only(demo):
     assert design["intensity_import"] == 4
     assert "intensity_simulate" not in design
     assert not [rule for rule in design if rule.startswith("feedback")]
+
+    sentences = edited(demo, "src/swaystride/studies/imu_design/recommendation.py")
+    assert sentences["imu_design_table"] == 13
+    assert not {"imu_design_metrics", "imu_design_models", "imu_design_figure"} & set(sentences)
+
+    clipping = edited(demo, "src/swaystride/signals/saturation.py")
+    assert clipping["imu_design_metrics"] == 2
+    assert not {"imu_design_simulate", "imu_design_import"} & set(clipping)
 
     fusion = edited(demo, "src/swaystride/signals/orientation.py")
     assert fusion["feedback_metrics"] == 6

@@ -17,7 +17,7 @@ def as_lab(sandbox, demo, study):
     path = sandbox.root / "config/config.yaml"
     text = path.read_text(encoding="utf-8").replace("cohort: synthetic\n", "cohort: my_lab\n")
     text = text.replace("  # my_lab:", "  my_lab:")
-    text = text.replace("studies: [feedback, intensity]", f"studies: [{study}]")
+    text = text.replace("studies: [feedback, intensity, imu_design]", f"studies: [{study}]")
     path.write_text(text, encoding="utf-8")
     return sandbox
 
@@ -120,3 +120,32 @@ def test_a_lab_with_ratings(demo, new_checkout):
     kept = pd.read_parquet(sandbox.root / frame)
     assert kept["rating"].notna().all()
     assert (kept["self_rating"].isna() == (kept["participant"] == "P02")).all()
+
+
+def test_a_lab_with_foot_recordings(demo, new_checkout):
+    """A file that is not there stops its participant; a foot without recordings is a finding."""
+    sandbox = as_lab(new_checkout("feet"), demo, "imu_design")
+    folder = sandbox.root / "data/raw/my_lab/imu_design"
+    quality = "results/my_lab/imu_design/quality"
+    (folder / "P01/P01_02_left_imu_2.csv").unlink()
+    process = sandbox.snakemake("--quiet", "rules", "--keep-going", "--", f"{quality}/flow.json")
+    assert process.returncode != 0
+    errors = [line for line in process.stdout.splitlines() if line.startswith("error: ")]
+    assert errors == [
+        "error: P01/P01_02_left_imu_2.csv: no such file; expected the file named in trials.tsv"
+    ]
+    assert "Traceback" not in process.stdout
+
+    path = folder / "trials.tsv"
+    trials = pd.read_csv(path, sep="\t", dtype=str, keep_default_na=False)
+    gone = (trials["participant"] == "P01") & (trials["trial"] == "02") & (trials["foot"] == "left")
+    trials[~gone].to_csv(path, sep="\t", index=False)
+    process = sandbox.snakemake("--quiet", "rules", "--", f"{quality}/flow.json")
+    assert process.returncode == 0, process.stdout
+    findings = pd.read_csv(sandbox.root / quality / "findings.csv", keep_default_na=False)
+    missing = findings[findings["check"] == "missing_foot"]
+    assert missing["place"].tolist() == ["trial 02, left foot"]
+    flow = json.loads((sandbox.root / quality / "flow.json").read_text(encoding="utf-8"))["flow"]
+    counts = {row["unit"]: (row["planned"], row["recorded"], row["analysed"]) for row in flow}
+    assert counts["recordings"] == (32, 30, 30)
+    assert counts["trials"][1:] == (8, 8)

@@ -169,7 +169,7 @@ def _read_trial(path: Path, name: str, rules: RecordingRules) -> Recording:
         raise RecordingError(
             "several sensors in one file",
             file=name,
-            expected="the lumbar sensor alone",
+            expected="one sensor in each file",
             found=", ".join(map(str, recording["sensor"].values)),
         )
     return recording.isel(time=present_span(six_axis_signals(recording)))
