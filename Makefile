@@ -56,7 +56,8 @@ benchmark-models: setup
 benchmark-feet: setup
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python scripts/benchmark_foot_trajectories.py
 
-peers: .venv-peers/.complete .venv-peers-gait/.complete
+peers: .venv-peers/.complete .venv-peers-gait/.complete .venv-peers-opal/.complete
+	@python scripts/peers_opal.py
 
 .venv-peers/.complete: requirements-peers.txt | .venv/.complete
 	@echo "setting up .venv-peers (once)"
@@ -68,6 +69,12 @@ peers: .venv-peers/.complete .venv-peers-gait/.complete
 	@echo "setting up .venv-peers-gait (once)"
 	@$(BIN)/python -m venv --clear .venv-peers-gait
 	@.venv-peers-gait/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers-gait.txt
+	@touch $@
+
+.venv-peers-opal/.complete: requirements-peers-opal.txt | .venv/.complete
+	@echo "setting up .venv-peers-opal (once)"
+	@$(BIN)/python -m venv --clear .venv-peers-opal
+	@.venv-peers-opal/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-peers-opal.txt
 	@touch $@
 
 recovery: setup

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from swaystride.command_line import run_script, script_parser
 from swaystride.presentation.figure_style import figure_style, save_figure
 from swaystride.validation import (
+    chest_strap_ecg,
     force_plate_models,
     lumbar_imu_standing,
     reliability_and_mixed_models,
@@ -17,6 +18,7 @@ from swaystride.validation import (
 )
 from swaystride.validation.figures import (
     figure_force_plate,
+    figure_heart_rate,
     figure_lumbar,
     figure_reliability,
 )
@@ -48,10 +50,17 @@ def reliability(folder: Path) -> Validated:
     return comparison, checks, figure_reliability
 
 
+def chest_strap(folder: Path) -> Validated:
+    """Minutes, checks and figure of the electrocardiogram."""
+    minutes = chest_strap_ecg.heart_rate_table(folder)
+    return minutes, chest_strap_ecg.heart_rate_checks(minutes, folder), figure_heart_rate
+
+
 DATASETS: Final[dict[str, Callable[[Path], Validated]]] = {
     standing_force_plate.DATASET: force_plate,
     lumbar_imu_standing.DATASET: lumbar,
     reliability_and_mixed_models.DATASET: reliability,
+    chest_strap_ecg.DATASET: chest_strap,
 }
 
 

@@ -24,6 +24,7 @@ VALIDATION_DATASETS = (
     "reliability_and_mixed_models",
     "foot_imu_vicon",
     "foot_imu_mocap_walk",
+    "chest_strap_ecg",
 )
 
 #: Of these, the foot recordings, which gaitmap computes too (``make peers``).

@@ -32,6 +32,8 @@ FACTORS_TO_SI: Final[dict[str, dict[str, float]]] = {
         "mdeg/s": RAD_PER_DEG / 1000.0,
     },
     "magnetic_field": {"T": 1.0, "uT": 1e-6, "µT": 1e-6, "mT": 1e-3, "nT": 1e-9, "a.u.": 1.0},
+    "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3},
+    "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "µV": 1e-6},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9},
 }
 
@@ -45,7 +47,7 @@ def to_si(values: ArrayLike, unit: str, quantity: str) -> NDArray[np.float64]:
         Numbers in `unit`.
     unit : str
         As spelled in the file or argument; never guessed.
-    quantity : {"acceleration", "angular_rate", "magnetic_field", "time"}
+    quantity : {"acceleration", "angular_rate", "magnetic_field", "length", "voltage", "time"}
         What the numbers are. Magnetic fields in arbitrary units (``a.u.``) stay as they are.
 
     Returns

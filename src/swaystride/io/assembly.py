@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from swaystride.findings import Finding
 from swaystride.io import checks
 from swaystride.io.hints import QUANTITY_OF, ReadHints
 from swaystride.io.sampling_rate import SamplingRate
-from swaystride.io.source_text import SourceText
 from swaystride.recording import Recording, make_recording
 from swaystride.units import to_si
 
@@ -21,6 +21,25 @@ Array = NDArray[np.float64]
 
 #: More lost than present samples by this factor is a broken counter, not a lossy recording.
 MOST_LOST_PER_ROW = 1000
+
+
+class Source(Protocol):
+    """What :func:`assemble` asks of an opened file, be it text or binary."""
+
+    @property
+    def name(self) -> str:
+        """Name without folder."""
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file as it lies on the disk."""
+
+    @property
+    def row_name(self) -> str:
+        """What its rows are called in findings."""
+
+    def has_unfinished_last_line(self) -> bool:
+        """Tell whether the last number may be cut."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +54,7 @@ class SensorRows:
     """
 
     label: str
-    signals: dict[str, Array] = field(default_factory=dict)
+    signals: dict[str, NDArray[Any]] = field(default_factory=dict)
 
 
 def select_sensors(labels: Sequence[str], hints: ReadHints, *, file: str) -> list[str]:
@@ -87,8 +106,32 @@ def single_label(hints: ReadHints, default: str, *, file: str) -> str:
     return hints.sensors[0] if hints.sensors else default
 
 
+def refuse_mostly_missing(index: NDArray[np.int64], *, file: str) -> None:
+    """Refuse a time axis that is almost empty before memory is taken for it.
+
+    Parameters
+    ----------
+    index : ndarray of int, shape (n_rows,)
+        Sample index of each row.
+    file : str
+
+    Raises
+    ------
+    RecordingError
+        If there is less than one row for :data:`MOST_LOST_PER_ROW` samples.
+    """
+    n_samples, n_rows = int(index[-1]) + 1, len(index)
+    if n_samples > MOST_LOST_PER_ROW * n_rows:
+        raise RecordingError(
+            "almost every sample is missing",
+            file=file,
+            expected=f"at least one row for {MOST_LOST_PER_ROW} samples",
+            found=f"{n_rows} rows for {n_samples} samples",
+        )
+
+
 def assemble(
-    source: SourceText,
+    source: Source,
     sensors: Sequence[SensorRows],
     *,
     index: NDArray[np.int64],
@@ -104,14 +147,14 @@ def assemble(
 
     Parameters
     ----------
-    source : SourceText
+    source : Source
     sensors : sequence of SensorRows
         In the order of the recording. A signal that only some sensors have is NaN for the others.
     index : ndarray of int, shape (n_rows,)
         Sample index of each row; samples in between become NaN, and of rows with the same index
         the first is kept.
     first_line : int
-        Line number of the first row.
+        Number of the first row.
     rate : SamplingRate
     units : mapping of str to str
         Unit of each signal in the file.
@@ -130,16 +173,16 @@ def assemble(
     RecordingError
         If a check finds an error, or far more samples are lost than are there.
     """
+    refuse_mostly_missing(index, file=source.name)
     n_samples, n_rows = int(index[-1]) + 1, len(index)
-    if n_samples > MOST_LOST_PER_ROW * n_rows:
-        raise RecordingError(
-            "almost every sample is missing",
-            file=source.name,
-            expected=f"at least one row for {MOST_LOST_PER_ROW} samples",
-            found=f"{n_rows} rows for {n_samples} samples",
-        )
     seen = [*findings, *rate.findings, *_unfinished_last_line(source)]
-    seen += checks.packet_loss(index, rate.rate_hz, file=source.name, first_line=first_line)
+    seen += checks.packet_loss(
+        index,
+        rate.rate_hz,
+        file=source.name,
+        first_line=first_line,
+        row_name=source.row_name,
+    )
     names = [
         name for name in ("acc", "gyr", "mag", "quat") if any(name in s.signals for s in sensors)
     ]
@@ -151,7 +194,11 @@ def assemble(
     for position, sensor in enumerate(sensors):
         prefix = f"{sensor.label} " if len(sensors) > 1 else ""
         for name, raw in sensor.signals.items():
-            values = to_si(raw, units[name], QUANTITY_OF[name]) if name in units else raw
+            values = (
+                to_si(raw, units[name], QUANTITY_OF[name])
+                if name in units
+                else np.asarray(raw, dtype=np.float64)
+            )
             if name in _UNIT_CHECKS:
                 seen += _UNIT_CHECKS[name](values, file=source.name, signal=prefix + name)
             seen += checks.nan_run(
@@ -161,6 +208,7 @@ def assemble(
                 file=source.name,
                 first_line=first_line,
                 signal=prefix + name,
+                row_name=source.row_name,
             )
             stacked[name][position][:, index[first]] = values[:, first]
     recording = make_recording(
@@ -194,7 +242,7 @@ _UNIT_CHECKS: dict[str, Callable[..., list[Finding]]] = {
 }
 
 
-def _unfinished_last_line(source: SourceText) -> list[Finding]:
+def _unfinished_last_line(source: Source) -> list[Finding]:
     """A last line without line end may have lost the end of its last number."""
     if not source.has_unfinished_last_line():
         return []

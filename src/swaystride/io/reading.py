@@ -10,7 +10,11 @@ from swaystride.errors import RecordingError
 from swaystride.io.acquisition_txt import is_acquisition_txt, read_acquisition_txt
 from swaystride.io.apdm_csv import is_apdm_csv, read_apdm_csv
 from swaystride.io.hints import DuplicatePackets, ReadHints
+from swaystride.io.motion_bids import is_motion_bids, read_motion_bids
+from swaystride.io.opal_hdf5 import is_opal_hdf5, read_opal_hdf5
+from swaystride.io.polar_ecg import is_polar_acc, read_polar_acc
 from swaystride.io.sidecar_csv import is_sidecar_csv, read_sidecar_csv
+from swaystride.io.source_binary import SourceBinary, open_binary, refuse_compressed
 from swaystride.io.source_text import SourceText, open_source
 from swaystride.io.xsens_txt import is_xsens_txt, read_xsens_txt
 from swaystride.recording import Recording
@@ -24,10 +28,23 @@ class Format(NamedTuple):
     read: Callable[[SourceText, ReadHints], Recording]
 
 
+class BinaryFormat(NamedTuple):
+    """The same for a file that is no text."""
+
+    name: str
+    recognises: Callable[[SourceBinary], bool]
+    read: Callable[[SourceBinary, ReadHints], Recording]
+
+
+#: Recognised by their first bytes, before a file is read as text.
+BINARY_FORMATS = (BinaryFormat("APDM Opal HDF5", is_opal_hdf5, read_opal_hdf5),)
+
 #: In the order in which they are tried; a sidecar is an explicit statement and comes first.
 FORMATS = (
     Format("CSV with a JSON sidecar", is_sidecar_csv, read_sidecar_csv),
+    Format("Motion-BIDS", is_motion_bids, read_motion_bids),
     Format("APDM CSV", is_apdm_csv, read_apdm_csv),
+    Format("Polar Sensor Logger ACC", is_polar_acc, read_polar_acc),
     Format("text with an acquisition frequency", is_acquisition_txt, read_acquisition_txt),
     Format("Xsens MT Manager TXT", is_xsens_txt, read_xsens_txt),
 )
@@ -87,7 +104,11 @@ def read_recording(
         sensors=(sensor,) if isinstance(sensor, str) else tuple(sensor or ()),
         duplicate_packets=duplicate_packets,
     )
+    binary = open_binary(path)
+    if binary is not None:
+        return _read_binary(binary, hints)
     source = open_source(path)
+    refuse_compressed(source.data, file=source.name)
     for candidate in FORMATS:
         if candidate.recognises(source):
             return candidate.read(source, hints)
@@ -95,6 +116,18 @@ def read_recording(
         "unknown format",
         file=source.name,
         place="first line",
-        expected="one of " + ", ".join(candidate.name for candidate in FORMATS),
+        expected="one of " + ", ".join(known.name for known in (*FORMATS, *BINARY_FORMATS)),
         found=repr(source.first_text()[:80]),
+    )
+
+
+def _read_binary(source: SourceBinary, hints: ReadHints) -> Recording:
+    for candidate in BINARY_FORMATS:
+        if candidate.recognises(source):
+            return candidate.read(source, hints)
+    raise RecordingError(
+        "the file holds no inertial sensors",
+        file=source.name,
+        expected="one of " + ", ".join(candidate.name for candidate in BINARY_FORMATS),
+        found="C3D, whose markers swaystride.io.c3d.read_c3d reads",
     )

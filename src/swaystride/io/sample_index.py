@@ -95,7 +95,7 @@ _COUNTER_PROBLEMS = {
 
 
 def index_from_stamps(
-    time_s: Array, *, file: str, first_line: int, column: str
+    time_s: Array, *, file: str, first_line: int, column: str, row_name: str = "line"
 ) -> tuple[StampedSamples, list[Finding]]:
     """Sample index and rate from a column of time stamps, with a finding if they are irregular.
 
@@ -109,6 +109,8 @@ def index_from_stamps(
         Line of the first row, for errors.
     column : str
         Name of the column, for errors.
+    row_name : str
+        What the file's rows are called: lines of a text, rows of a data set.
 
     Raises
     ------
@@ -120,7 +122,7 @@ def index_from_stamps(
         raise RecordingError(
             f"{column}: no time stamp" if bad.size else f"{column}: a single time stamp",
             file=file,
-            place=f"line {first_line + (int(bad[0]) if bad.size else 0)}",
+            place=f"{row_name} {first_line + (int(bad[0]) if bad.size else 0)}",
             expected="a number in every row, and at least two rows",
             found="an empty field" if bad.size else "one row",
         )
@@ -131,7 +133,7 @@ def index_from_stamps(
         raise RecordingError(
             f"{column}: time stamps do not advance by whole sampling intervals",
             file=file,
-            place=f"line {first_line + row}",
+            place=f"{row_name} {first_line + row}",
             expected="a stamp at least half a sampling interval after the one before",
             found=f"a step of {step:.6g} s",
         )

@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from swaystride.errors import RecordingError
 
@@ -48,6 +48,7 @@ class SourceText:
     path: Path
     data: bytes
     sha256: str
+    row_name: ClassVar[str] = "line"
 
     @property
     def name(self) -> str:

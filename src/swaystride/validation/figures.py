@@ -77,6 +77,27 @@ def figure_lumbar(trials: pd.DataFrame) -> Figure:
     return fig
 
 
+def figure_heart_rate(minutes: pd.DataFrame) -> Figure:
+    """Heart rate minute by minute, from R-peaks and as the strap reported it.
+
+    Parameters
+    ----------
+    minutes : DataFrame
+        As from :func:`swaystride.validation.chest_strap_ecg.heart_rate_table`.
+    """
+    fig = new_figure("single", height_mm=60)
+    axes = fig.subplots()
+    for column, label, colour, marker in (
+        ("heart_rate_bpm", "R-peaks", OKABE_ITO["blue"], "o"),
+        ("strap_heart_rate_bpm", "strap", OKABE_ITO["vermillion"], "^"),
+    ):
+        axes.plot(minutes["minute"], minutes[column], f"{marker}-", color=colour, label=label)
+    axes.set_xlabel("minute")
+    axes.set_ylabel("heart rate, 1/min")
+    axes.legend()
+    return fig
+
+
 def figure_reliability(comparison: pd.DataFrame) -> Figure:
     """ICC(2,1) of every table of ratings, ours and R's, and all differences over their tolerance.
 
