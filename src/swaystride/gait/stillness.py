@@ -27,6 +27,8 @@ Index = NDArray[np.int64]
 _STILL_FLOOR_RAD_S: Final = 0.05
 #: Two stances of a foot are further apart than this share of a stride.
 _LEAST_STRIDE_SHARE: Final = 0.6
+#: Candidates whole strides apart agree in their phase to this share of a stride.
+_SAME_PHASE_SHARE: Final = 0.15
 #: The mean squared rate over this window says how fast a candidate turns.
 _TURN_WINDOW_S: Final = 0.03
 
@@ -182,29 +184,47 @@ def find_stances(
 def _one_per_stride(
     candidates: Index, movement: Array, gyr_rad_s: ArrayLike, rate_hz: float
 ) -> Index:
-    """Drop candidates within 0.6 local stride times of one that turns less: turns of swings.
+    """Drop candidates within 0.6 local stride times of a better one: turns of swings.
 
-    At the turn of a swing a foot may be as still as in the stance of a sprint, but it turns faster.
-    Where there is no rhythm nothing is dropped.
+    At the turn of a swing a foot may for once be as still as in the stance of a sprint, or turn as
+    slowly, but not in stride after stride: candidates are judged together with those whole strides
+    before and after. Where there is no rhythm nothing is dropped.
     """
     centre_s, stride_s = local_stride_s(movement, rate_hz)
     known = np.isfinite(stride_s)
     if candidates.size < 2 or not known.any():
         return candidates
     nearest = np.abs(candidates[:, None] / rate_hz - centre_s[None, :]).argmin(axis=1)
-    apart = np.where(known[nearest], _LEAST_STRIDE_SHARE * stride_s[nearest] * rate_hz, 0.0)
+    period = np.where(known[nearest], stride_s[nearest] * rate_hz, 0.0)
     gyr = np.asarray(gyr_rad_s, dtype=np.float64)
     reach = int(0.5 * _TURN_WINDOW_S * rate_hz)
-    window = candidates[:, None] + np.arange(-reach, reach + 1)
-    window = np.clip(window, 0, gyr.shape[1] - 1)
-    turning = np.sum(gyr[:, window] ** 2, axis=(0, 2))
+    window = np.clip(candidates[:, None] + np.arange(-reach, reach + 1), 0, gyr.shape[1] - 1)
+    turning = np.mean(np.sum(gyr[:, window] ** 2, axis=0), axis=1)
+    unrest = np.log(np.maximum(turning, 1e-6)) + 2.0 * np.log(
+        np.maximum(movement[candidates], 1e-3)
+    )
+    unrest = _over_strides(candidates, unrest, period)
     kept = np.ones(candidates.size, dtype=np.bool_)
-    for this in np.argsort(turning, kind="stable"):
+    for this in np.argsort(unrest, kind="stable"):
         if kept[this]:
-            near = np.abs(candidates - candidates[this]) < apart[this]
+            near = np.abs(candidates - candidates[this]) < _LEAST_STRIDE_SHARE * period[this]
             near[this] = False
             kept &= ~near
     return candidates[kept]
+
+
+def _over_strides(candidates: Index, values: Array, period: Array) -> Array:
+    """Mean of a value over each candidate and those up to three strides before and after it."""
+    total, count = values.copy(), np.ones(candidates.size)
+    for strides in (-3, -2, -1, 1, 2, 3):
+        wanted = candidates + strides * period
+        other = np.clip(np.searchsorted(candidates, wanted), 1, candidates.size - 1)
+        before = wanted - candidates[other - 1] < candidates[other] - wanted
+        other = np.where(before, other - 1, other)
+        there = np.abs(candidates[other] - wanted) < _SAME_PHASE_SHARE * period
+        total += np.where(there, values[other], 0.0)
+        count += there
+    return np.asarray(total / count)
 
 
 def _odd_samples(duration_s: float, rate_hz: float) -> int:
