@@ -20,6 +20,7 @@ FLOORS = {
     "presentation": 2,
     "sway": 3,
     "gait": 3,
+    "erkf": 3,
     "simulate": 4,
     "studies": 5,
     "validation": 5,
@@ -117,7 +118,9 @@ def test_public_names_are_documented(name):
                 assert described, f"{name}.{member_name}: parameter {parameter} is not described"
 
 
-@pytest.mark.parametrize("package", ["swaystride.io", "swaystride.stats", "swaystride.sway", "swaystride.gait"]
+@pytest.mark.parametrize(
+    "package",
+    ["swaystride.io", "swaystride.stats", "swaystride.sway", "swaystride.gait", "swaystride.erkf"],
 )
 def test_lazy_exports_resolve_and_cost_nothing(package):
     module = importlib.import_module(package)
@@ -128,7 +131,7 @@ def test_lazy_exports_resolve_and_cost_nothing(package):
 
 
 def test_importing_the_package_loads_no_heavy_library():
-    probe = "import sys, swaystride.sway, swaystride.gait, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
+    probe = "import sys, swaystride.sway, swaystride.gait, swaystride.erkf, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
     answer = subprocess.run(
         [sys.executable, "-c", probe],
         capture_output=True,

@@ -1,0 +1,196 @@
+"""The body as the filter sees it: segments with one sensor each, joints between them, feet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swaystride.errors import RecordingError
+
+Array = NDArray[np.float64]
+JointKind = Literal["hip", "knee", "ankle"]
+Side = Literal["right", "left"]
+
+#: Order of segments in every array (methods §0.2).
+SEGMENTS: Final = (
+    "pelvis",
+    "right_thigh",
+    "left_thigh",
+    "right_shank",
+    "left_shank",
+    "right_foot",
+    "left_foot",
+)
+#: Kind, side, proximal and distal segment of the six joints of the lower limbs.
+LOWER_LIMB_JOINTS: Final[tuple[tuple[JointKind, Side, str, str], ...]] = (
+    ("hip", "right", "pelvis", "right_thigh"),
+    ("hip", "left", "pelvis", "left_thigh"),
+    ("knee", "right", "right_thigh", "right_shank"),
+    ("knee", "left", "left_thigh", "left_shank"),
+    ("ankle", "right", "right_shank", "right_foot"),
+    ("ankle", "left", "left_shank", "left_foot"),
+)
+#: Factors on alpha, beta, gamma of the Cardan sequence Z-X'-Y'' with z to the right on both sides,
+#: so that flexion (dorsiflexion), adduction (inversion) and internal rotation are positive
+#: (methods §1.8).
+ANGLE_SIGNS: Final[dict[tuple[JointKind, Side], tuple[float, float, float]]] = {
+    ("hip", "right"): (1.0, 1.0, 1.0),
+    ("hip", "left"): (1.0, -1.0, -1.0),
+    ("knee", "right"): (-1.0, 1.0, 1.0),
+    ("knee", "left"): (-1.0, -1.0, -1.0),
+    ("ankle", "right"): (1.0, 1.0, 1.0),
+    ("ankle", "left"): (1.0, -1.0, -1.0),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint between two segments.
+
+    Parameters
+    ----------
+    kind : {"hip", "knee", "ankle"}
+        Chooses the noise of its constraints and the signs of its angles.
+    side : {"right", "left"}
+    proximal, distal : str
+        Names of its segments.
+    proximal_centre_m, distal_centre_m : ndarray, shape (3,)
+        Joint centre in the frames of both sensors.
+    proximal_axis, distal_axis : ndarray, shape (3,), optional
+        Unit vector of the joint axis in the frames of both sensors; without it there is no
+        constraint on the axis.
+    neutral_rad : ndarray, shape (3,), optional
+        Signed angles that count as zero (the ankle of quiet standing).
+    """
+
+    kind: JointKind
+    side: Side
+    proximal: str
+    distal: str
+    proximal_centre_m: Array
+    distal_centre_m: Array
+    proximal_axis: Array | None = None
+    distal_axis: Array | None = None
+    neutral_rad: Array | None = None
+
+    @property
+    def name(self) -> str:
+        """Side and kind, for example ``right_knee``."""
+        return f"{self.side}_{self.kind}"
+
+    @property
+    def signs(self) -> Array:
+        """Factors on the three Cardan angles."""
+        return np.array(ANGLE_SIGNS[self.kind, self.side])
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Segments, joints and feet of one person in one session.
+
+    Parameters
+    ----------
+    segments : tuple of str
+        Names, in the order of the states.
+    r_anatomical_from_sensor : ndarray, shape (n_segments, 3, 3)
+        Mounting of the sensors (anatomical: x forward, y up, z right).
+    joints : tuple of Joint
+        Any number, between any two segments.
+    contact_levers_m : dict of str to ndarray, shape (3,)
+        The segments that touch the ground, each with the vector from its sensor to the contact
+        point, in the frame of the sensor. Their keys are the feet of `zero_velocity`.
+    """
+
+    segments: tuple[str, ...]
+    r_anatomical_from_sensor: Array
+    joints: tuple[Joint, ...]
+    contact_levers_m: dict[str, Array]
+
+    def index(self, segment: str) -> int:
+        """Position of a segment.
+
+        Parameters
+        ----------
+        segment : str
+            Its name.
+
+        Raises
+        ------
+        RecordingError
+            If the body has no such segment.
+        """
+        if segment not in self.segments:
+            raise RecordingError(
+                "unknown segment", expected=", ".join(self.segments), found=segment
+            )
+        return self.segments.index(segment)
+
+
+def lower_limb_body(
+    r_anatomical_from_sensor: Array,
+    centres_m: dict[str, tuple[Array, Array]],
+    contact_levers_m: dict[str, Array],
+    *,
+    axes: dict[str, tuple[Array, Array]] | None = None,
+    neutral_rad: dict[str, Array] | None = None,
+) -> Body:
+    """Body of seven segments and six joints.
+
+    Parameters
+    ----------
+    r_anatomical_from_sensor : ndarray, shape (7, 3, 3)
+        In the order of :data:`SEGMENTS`.
+    centres_m : dict of str to (ndarray, ndarray)
+        For ``right_hip``, … the centre in the frames of the proximal and the distal sensor.
+    contact_levers_m : dict of str to ndarray
+        For ``right_foot`` and ``left_foot``.
+    axes : dict of str to (ndarray, ndarray), optional
+        Joint axes in both sensor frames. By default, for hips and knees, the anatomical z axis of
+        each segment (methods §1.7).
+    neutral_rad : dict of str to ndarray, optional
+        Signed angles that count as zero.
+
+    Returns
+    -------
+    Body
+    """
+    joints = []
+    for kind, side, proximal, distal in LOWER_LIMB_JOINTS:
+        name = f"{side}_{kind}"
+        pair: tuple[Array | None, Array | None] = (None, None)
+        if axes is not None:
+            pair = axes.get(name, pair)
+        elif kind != "ankle":
+            # r_anatomical_from_sensor.T @ e_z: the third row
+            pair = (
+                r_anatomical_from_sensor[SEGMENTS.index(proximal), 2],
+                r_anatomical_from_sensor[SEGMENTS.index(distal), 2],
+            )
+        one, two = centres_m[name]
+        neutral = (neutral_rad or {}).get(name)
+        joints.append(Joint(kind, side, proximal, distal, one, two, pair[0], pair[1], neutral))
+    return Body(SEGMENTS, r_anatomical_from_sensor, tuple(joints), contact_levers_m)
+
+
+def centres_in_sensors(centre_m: Array, position_m: Array, r_world_from_sensor: Array) -> Array:
+    """Vector from a sensor to a joint centre in the frame of the sensor, mean over time.
+
+    Parameters
+    ----------
+    centre_m : ndarray, shape (n_samples, 3)
+        Joint centre in the world.
+    position_m : ndarray, shape (n_samples, 3)
+        Sensor in the world.
+    r_world_from_sensor : ndarray, shape (n_samples, 3, 3)
+        Orientation of the sensor.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Samples with NaN are left out.
+    """
+    local = np.einsum("nba,nb->na", r_world_from_sensor, centre_m - position_m)
+    return np.asarray(np.nanmean(local, axis=0))
