@@ -194,7 +194,7 @@ def _one_per_stride(
     known = np.isfinite(stride_s)
     if candidates.size < 2 or not known.any():
         return candidates
-    nearest = np.abs(candidates[:, None] / rate_hz - centre_s[None, :]).argmin(axis=1)
+    nearest = np.searchsorted(0.5 * (centre_s[1:] + centre_s[:-1]), candidates / rate_hz)
     period = np.where(known[nearest], stride_s[nearest] * rate_hz, 0.0)
     gyr = np.asarray(gyr_rad_s, dtype=np.float64)
     reach = int(0.5 * _TURN_WINDOW_S * rate_hz)
@@ -204,12 +204,14 @@ def _one_per_stride(
         np.maximum(movement[candidates], 1e-3)
     )
     unrest = _over_strides(candidates, unrest, period)
+    reach_of = _LEAST_STRIDE_SHARE * period
+    first = np.searchsorted(candidates, candidates - reach_of, side="right")
+    stop = np.searchsorted(candidates, candidates + reach_of, side="left")
     kept = np.ones(candidates.size, dtype=np.bool_)
     for this in np.argsort(unrest, kind="stable"):
         if kept[this]:
-            near = np.abs(candidates - candidates[this]) < _LEAST_STRIDE_SHARE * period[this]
-            near[this] = False
-            kept &= ~near
+            kept[first[this] : stop[this]] = False
+            kept[this] = True
     return candidates[kept]
 
 

@@ -124,10 +124,19 @@ def _flat_steps(values: Array, level: float) -> Index:
     stop = steps[np.r_[breaks, steps.size - 1]] + 1
     long = stop - first >= _FEWEST_STEPS
     runs = np.stack([first[long], stop[long]], axis=1).astype(np.int64)
-    return runs[[_has_edges(values, *run) for run in runs.tolist()]] if len(runs) else runs
+    return runs[_have_edges(values, runs)] if len(runs) else runs
 
 
-def _has_edges(values: Array, first: int, stop: int) -> bool:
-    """Whether a run begins or ends abruptly, as no smooth peak does."""
-    inside = float(np.mean(np.abs(np.diff(values[first : stop + 1]))))
-    return max(_rise(values, first, -1), _rise(values, stop, 1)) > _EDGE_RATIO * inside
+def _have_edges(values: Array, runs: Index) -> NDArray[np.bool_]:
+    """Flag runs that begin or end abruptly, as no smooth peak does."""
+    first, stop = runs.T
+    travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
+    inside = (travelled[stop] - travelled[first]) / (stop - first)
+    last = len(values) - 1
+    before = np.where(first >= 2, values[first - 1] - values[first - 2], 0.0)
+    after = np.where(
+        stop <= last - 2,
+        values[np.minimum(stop + 1, last)] - values[np.minimum(stop + 2, last)],
+        0.0,
+    )
+    return np.asarray(np.maximum(before, after) > _EDGE_RATIO * inside)
