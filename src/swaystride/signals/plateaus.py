@@ -61,9 +61,9 @@ def restore_plateaus(signal: ArrayLike, *, least_level: float) -> tuple[Array, A
         if restored is values:
             restored = values.copy()
         flank = sign * values[number]
-        for first, stop in runs.tolist():
+        slopes = 0.5 * (_rises(flank, runs[:, 0], -1) + _rises(flank, runs[:, 1], 1))
+        for (first, stop), slope in zip(runs.tolist(), slopes.tolist(), strict=True):
             steps = stop - first
-            slope = 0.5 * (_rise(flank, first, -1) + _rise(flank, stop, 1))
             t = np.arange(steps + 1)
             restored[number, first : stop + 1] += sign * slope * t * (1.0 - t / steps)
             spread = _EXCESS_UNCERTAINTY * slope * steps / 6.0
@@ -88,15 +88,15 @@ def flattened_share(signal: ArrayLike, *, least_level: float) -> float:
     return float(np.count_nonzero(flat) / max(flat.size, 1))
 
 
-def _rise(flank: Array, edge: int, step: int) -> float:
-    """Rise towards a plateau over the last step before it (`step` −1) or after it (1), if any.
+def _rises(flank: Array, edges: Index, step: int) -> Array:
+    """Rise towards each plateau over the last step before it (`step` −1) or after it (1), if any.
 
     The step next to the plateau is cut by it; the one before is not.
     """
-    near, far = edge + step, edge + 2 * step
-    if not (0 <= far < len(flank)):
-        return 0.0
-    return max(float(flank[near] - flank[far]), 0.0)
+    near, far = edges + step, edges + 2 * step
+    inside = (far >= 0) & (far < len(flank))
+    rise = flank[np.where(inside, near, 0)] - flank[np.where(inside, far, 0)]
+    return np.asarray(np.maximum(rise, 0.0))
 
 
 def _flat_runs(values: Array, least_level: float) -> list[tuple[int, float, Index]]:
@@ -132,11 +132,5 @@ def _have_edges(values: Array, runs: Index) -> NDArray[np.bool_]:
     first, stop = runs.T
     travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(values)))])
     inside = (travelled[stop] - travelled[first]) / (stop - first)
-    last = len(values) - 1
-    before = np.where(first >= 2, values[first - 1] - values[first - 2], 0.0)
-    after = np.where(
-        stop <= last - 2,
-        values[np.minimum(stop + 1, last)] - values[np.minimum(stop + 2, last)],
-        0.0,
-    )
-    return np.asarray(np.maximum(before, after) > _EDGE_RATIO * inside)
+    steepest = np.maximum(_rises(values, first, -1), _rises(values, stop, 1))
+    return np.asarray(steepest > _EDGE_RATIO * inside)
