@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import fft
 
 Array = NDArray[np.float64]
 
@@ -59,8 +60,8 @@ def local_stride_s(movement: ArrayLike, rate_hz: float) -> tuple[Array, Array]:
         return np.empty(0), np.empty(0)
     windows = np.lib.stride_tricks.sliding_window_view(slow, length)[::hop]
     centred = windows - windows.mean(axis=1, keepdims=True)
-    power = np.abs(np.fft.rfft(centred, 2 * length, axis=1)) ** 2
-    correlation = np.fft.irfft(power, axis=1)[:, : length // 2 + 1]
+    power = np.abs(fft.rfft(centred, 2 * length, axis=1)) ** 2
+    correlation = fft.irfft(power, axis=1)[:, : length // 2 + 1]
     # pairs become fewer with the lag
     correlation *= length / (length - np.arange(correlation.shape[1]))
     correlation /= np.maximum(correlation[:, :1], 1e-12)

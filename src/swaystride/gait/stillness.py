@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.signal import find_peaks
 
-from swaystride.gait.cadence import local_stride_s
 from swaystride.gait.foot_methods import FootMethod
+from swaystride.gait.stance_rhythm import stances_in_rhythm
 from swaystride.units import GRAVITY_M_S2
 
 Array = NDArray[np.float64]
@@ -25,12 +25,6 @@ Index = NDArray[np.int64]
 
 #: Below this (rad/s) differences of stillness are noise of the sensor, not movement.
 _STILL_FLOOR_RAD_S: Final = 0.05
-#: Two stances of a foot are further apart than this share of a stride.
-_LEAST_STRIDE_SHARE: Final = 0.6
-#: Candidates whole strides apart agree in their phase to this share of a stride.
-_SAME_PHASE_SHARE: Final = 0.15
-#: The mean squared rate over this window says how fast a candidate turns.
-_TURN_WINDOW_S: Final = 0.03
 
 
 def stillness_rad_s(
@@ -118,13 +112,13 @@ def find_rests(
 def find_stances(
     acc_m_s2: ArrayLike, gyr_rad_s: ArrayLike, rate_hz: float, method: FootMethod, rests: Index
 ) -> Index:
-    """Stillest sample of every stance, rests included as one.
+    """Stillest sample of every stance outside the rests.
 
     A minimum of the logarithm of stillness is a candidate if it rises to either side by the factor
-    ``stance_ratio`` before it falls lower (within ``stance_context_s``). It counts if it lies nearer
-    to the stillest candidate around it than to the least still instant, and if no candidate within a
-    stride turns less. Rests are no candidates, because a running foot is never as still as a
-    standing one.
+    ``stance_ratio`` before it falls lower (within ``stance_context_s``) and if it lies nearer to the
+    stillest candidate around it than to the least still instant. Rests are no candidates, because a
+    running foot is never as still as a standing one. Among the candidates the rhythm decides:
+    :func:`swaystride.gait.stance_rhythm.stances_in_rhythm`.
 
     Parameters
     ----------
@@ -177,56 +171,8 @@ def find_stances(
         still[first:stop] = -np.inf
     most = np.maximum(maximum_filter1d(still, around, mode="nearest")[minima], depth[minima])
     is_stance = depth[minima] - least > method.stance_depth * (most - least)
-    candidates = np.asarray(minima[is_stance], dtype=np.int64)
-    return _one_per_stride(candidates, movement, gyr_rad_s, rate_hz)
-
-
-def _one_per_stride(
-    candidates: Index, movement: Array, gyr_rad_s: ArrayLike, rate_hz: float
-) -> Index:
-    """Drop candidates within 0.6 local stride times of a better one: turns of swings.
-
-    At the turn of a swing a foot may for once be as still as in the stance of a sprint, or turn as
-    slowly, but not in stride after stride: candidates are judged together with those whole strides
-    before and after. Where there is no rhythm nothing is dropped.
-    """
-    centre_s, stride_s = local_stride_s(movement, rate_hz)
-    known = np.isfinite(stride_s)
-    if candidates.size < 2 or not known.any():
-        return candidates
-    nearest = np.searchsorted(0.5 * (centre_s[1:] + centre_s[:-1]), candidates / rate_hz)
-    period = np.where(known[nearest], stride_s[nearest] * rate_hz, 0.0)
-    gyr = np.asarray(gyr_rad_s, dtype=np.float64)
-    reach = int(0.5 * _TURN_WINDOW_S * rate_hz)
-    window = np.clip(candidates[:, None] + np.arange(-reach, reach + 1), 0, gyr.shape[1] - 1)
-    turning = np.mean(np.sum(gyr[:, window] ** 2, axis=0), axis=1)
-    unrest = np.log(np.maximum(turning, 1e-6)) + 2.0 * np.log(
-        np.maximum(movement[candidates], 1e-3)
-    )
-    unrest = _over_strides(candidates, unrest, period)
-    reach_of = _LEAST_STRIDE_SHARE * period
-    first = np.searchsorted(candidates, candidates - reach_of, side="right")
-    stop = np.searchsorted(candidates, candidates + reach_of, side="left")
-    kept = np.ones(candidates.size, dtype=np.bool_)
-    for this in np.argsort(unrest, kind="stable"):
-        if kept[this]:
-            kept[first[this] : stop[this]] = False
-            kept[this] = True
-    return candidates[kept]
-
-
-def _over_strides(candidates: Index, values: Array, period: Array) -> Array:
-    """Mean of a value over each candidate and those up to three strides before and after it."""
-    total, count = values.copy(), np.ones(candidates.size)
-    for strides in (-3, -2, -1, 1, 2, 3):
-        wanted = candidates + strides * period
-        other = np.clip(np.searchsorted(candidates, wanted), 1, candidates.size - 1)
-        before = wanted - candidates[other - 1] < candidates[other] - wanted
-        other = np.where(before, other - 1, other)
-        there = np.abs(candidates[other] - wanted) < _SAME_PHASE_SHARE * period
-        total += np.where(there, values[other], 0.0)
-        count += there
-    return np.asarray(total / count)
+    candidates = np.asarray(minima[is_stance & np.isfinite(still[minima])], dtype=np.int64)
+    return stances_in_rhythm(candidates, movement, acc_m_s2, gyr_rad_s, rate_hz)
 
 
 def _odd_samples(duration_s: float, rate_hz: float) -> int:
