@@ -17,7 +17,7 @@ Index = NDArray[np.int64]
 #: Two stances of a foot are further apart than this share of a stride.
 _LEAST_STRIDE_SHARE: Final = 0.6
 #: Candidates whole strides apart agree in their phase to this share of a stride.
-_SAME_PHASE_SHARE: Final = 0.15
+_SAME_PHASE_SHARE: Final = 0.08
 #: Candidates are judged together with those this many whole strides before and after.
 _STRIDES_JUDGED: Final = 3
 #: The mean squared rate over this window says how fast a candidate turns.
