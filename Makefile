@@ -86,7 +86,7 @@ dry-run: setup
 	@snakemake --cores $(CORES) --dry-run all
 
 test: setup
-	@python -m pytest
+	@python -m pytest -n $(CORES) --dist loadgroup
 
 lint: setup
 	@ruff check .

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from participant_rules import ParticipantRules
 from project import Project
-from standing_rules import StandingRules
 
 #: Features of the study, one model job each.
 FEATURES: Final = ("phi_rms", "ap_rms", "ml_rms", "phi_mv", "path_length", "ellipse_area")
@@ -18,7 +18,7 @@ RECOVERY_COHORTS: Final = 200
 RECOVERY_RAW_SEEDS: Final = (101, 102, 103, 104, 105)
 
 
-class FeedbackRules(StandingRules):
+class FeedbackRules(ParticipantRules):
     """Input functions of the feedback study.
 
     Parameters

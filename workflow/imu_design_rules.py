@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from participant_rules import ParticipantRules
 from project import Project
-from standing_rules import StandingRules
 
 #: Files of the models, by what needs them.
 MODELS: Final = ("observations", "effects", "components", "residuals")
@@ -40,8 +40,8 @@ FIGURE_MODELS: Final = {
 RECOVERY_SEEDS: Final = tuple(range(2601, 2621))
 
 
-class ImuDesignRules(StandingRules):
-    """Input functions of the IMU-design study, whose unit of work is a participant too.
+class ImuDesignRules(ParticipantRules):
+    """Input functions of the IMU-design study.
 
     Parameters
     ----------

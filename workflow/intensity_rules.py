@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Final
 
+from participant_rules import ParticipantRules
 from project import Project
-from standing_rules import StandingRules
 
 #: The lab's tables.
 LAB_TABLES: Final = ("participants", "raters", "trials", "ratings")
@@ -60,7 +60,7 @@ def block_files(block: str) -> list[str]:
     return [f"{folder}/{name}.parquet" for name in MODEL_FILES[block]]
 
 
-class IntensityRules(StandingRules):
+class IntensityRules(ParticipantRules):
     """Input functions of the intensity study.
 
     Parameters

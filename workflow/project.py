@@ -25,10 +25,15 @@ VALIDATION_DATASETS = (
     "foot_imu_vicon",
     "foot_imu_mocap_walk",
     "chest_strap_ecg",
+    "running_markers_grf",
+    "running_full_body_ik",
 )
 
 #: Of these, the foot recordings, which gaitmap computes too (``make peers``).
 FOOT_DATASETS = ("foot_imu_vicon", "foot_imu_mocap_walk")
+
+#: Runners beside whom the simulated one is laid.
+RUNNING_DATASETS = ("running_markers_grf", "running_full_body_ik")
 
 #: Marker of gaitmap's own environment, written when it is complete.
 GAITMAP_ENVIRONMENT = ".venv-peers-gait/.complete"

@@ -1,6 +1,6 @@
 # The library on public real recordings (real_data_dir, or SWAYSTRIDE_REAL_DATA).
 
-from project import FOOT_DATASETS, VALIDATION_DATASETS
+from project import FOOT_DATASETS, RUNNING_DATASETS, VALIDATION_DATASETS
 
 
 rule validation_dataset:
@@ -16,7 +16,9 @@ rule validation_dataset:
         "logs/validation/{dataset}.log",
     wildcard_constraints:
         dataset="|".join(
-            name for name in VALIDATION_DATASETS if name not in FOOT_DATASETS
+            name
+            for name in VALIDATION_DATASETS
+            if name not in (*FOOT_DATASETS, *RUNNING_DATASETS)
         ),
     conda:
         "../envs/swaystride.yaml"
@@ -53,6 +55,29 @@ for dataset in FOOT_DATASETS:
             "python scripts/validation_feet.py --dataset {params.dataset:q}"
             " --real-data {params.real_data:q} {params.gaitmap} --checks {output.checks:q}"
             " 2>&1 | tee {log:q}"
+
+
+# The simulated runner beside real ones.
+for dataset in RUNNING_DATASETS:
+
+    rule:
+        name:
+            f"validation_{dataset}"
+        input:
+            code("scripts/validation_running.py"),
+        output:
+            project.validation_files(dataset)[1:],
+            checks=project.validation_files(dataset)[0],
+        log:
+            f"logs/validation/{dataset}.log",
+        conda:
+            "../envs/swaystride.yaml"
+        params:
+            dataset=dataset,
+            real_data=str(project.real_data_dir),
+        shell:
+            "python scripts/validation_running.py --dataset {params.dataset:q}"
+            " --real-data {params.real_data:q} --checks {output.checks:q} 2>&1 | tee {log:q}"
 
 
 # gaitmap in its own environment, once `make peers` has set it up; a table at hand is used as it is.

@@ -62,7 +62,7 @@ def stillness_rad_s(
     acc, gyr = np.asarray(acc_m_s2, dtype=np.float64), np.asarray(gyr_rad_s, dtype=np.float64)
     excess = np.sqrt(np.einsum("ij,ij->j", acc, acc)) - GRAVITY_M_S2
     movement = np.einsum("ij,ij->j", gyr, gyr) + (excess / acc_m_s2_per_rad_s) ** 2
-    mean = uniform_filter1d(movement, _odd_samples(window_s, rate_hz), mode="nearest")
+    mean = uniform_filter1d(movement, _odd_samples(window_s, rate_hz), mode="reflect")
     return np.asarray(np.sqrt(np.maximum(mean, 0.0)))
 
 

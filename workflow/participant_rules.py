@@ -1,4 +1,4 @@
-"""Inputs that the rules of every study of standing balance share, as functions of their wildcards."""
+"""Inputs that the rules of studies share whose unit of work is a participant."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from project import Project
 
 
-class StandingRules:
+class ParticipantRules:
     """Input functions of one study; ``wildcards`` is what Snakemake passes.
 
     Parameters
