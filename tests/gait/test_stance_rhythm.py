@@ -10,6 +10,7 @@ from swaystride.gait.stillness import find_rests, find_stances, stillness_rad_s
 
 RUN = {"stride_s": 0.7, "stance_s": 0.2, "stride_m": 2.8, "roll_rad_s": 1.0}
 RATE_HZ = 200.0
+NO_RESTS = np.empty((0, 2), dtype=np.int64)
 
 
 def _movement(acc, gyr):
@@ -64,6 +65,9 @@ def test_no_rhythm_and_clipped_strides_have_no_height():
     limit = np.quantile(np.abs(own.acc).max(axis=0)[at[0] - 140 : at[0] + 140], 0.8)
     clipped = np.clip(own.acc, -limit, limit)
     assert np.isnan(height_shares(clipped, own.gyr, RATE_HZ, at, [140.0, 140.0])).all()
+    limit = np.quantile(np.abs(own.gyr).max(axis=0)[at[0] - 140 : at[0] + 140], 0.5)
+    clipped = np.clip(own.gyr, -limit, limit)
+    assert np.isnan(height_shares(own.acc, clipped, RATE_HZ, at, [140.0, 140.0])).all()
 
 
 def test_a_stiller_turn_of_the_swing_does_not_replace_its_stance():
@@ -74,25 +78,36 @@ def test_a_stiller_turn_of_the_swing_does_not_replace_its_stance():
     movement[swings] = 0.5 * movement[own.stances].min()
     candidates = np.sort(np.r_[own.stances, swings])
     assert np.array_equal(
-        stances_in_rhythm(candidates, movement, own.acc, own.gyr, RATE_HZ), own.stances
+        stances_in_rhythm(candidates, movement, own.acc, own.gyr, RATE_HZ, NO_RESTS), own.stances
     )
 
 
-@pytest.mark.parametrize("n_missing", [1, 2, 3])
-def test_up_to_three_stances_in_a_row_are_put_back(n_missing):
-    own = walk(n_strides=14, rate_hz=RATE_HZ, **RUN)
+@pytest.mark.parametrize("n_missing", [1, 3, 9])
+def test_up_to_nine_stances_in_a_row_are_put_back(n_missing):
+    own = walk(n_strides=20, rate_hz=RATE_HZ, **RUN)
     missing = slice(5, 5 + n_missing)
     given = np.delete(own.stances, missing)
-    found = stances_in_rhythm(given, _movement(own.acc, own.gyr), own.acc, own.gyr, RATE_HZ)
+    movement = _movement(own.acc, own.gyr)
+    found = stances_in_rhythm(given, movement, own.acc, own.gyr, RATE_HZ, NO_RESTS)
     assert len(found) == len(own.stances)
     assert np.abs(found[missing] - own.stances[missing]).max() <= 0.1 * RATE_HZ
     assert set(given) <= set(found)
 
 
-def test_four_missing_stances_stay_missing():
-    own = walk(n_strides=16, rate_hz=RATE_HZ, **RUN)
-    given = np.delete(own.stances, slice(5, 9))
-    found = stances_in_rhythm(given, _movement(own.acc, own.gyr), own.acc, own.gyr, RATE_HZ)
+def test_ten_missing_stances_stay_missing():
+    own = walk(n_strides=20, rate_hz=RATE_HZ, **RUN)
+    given = np.delete(own.stances, slice(5, 15))
+    movement = _movement(own.acc, own.gyr)
+    found = stances_in_rhythm(given, movement, own.acc, own.gyr, RATE_HZ, NO_RESTS)
+    assert np.array_equal(found, given)
+
+
+def test_no_stance_is_put_back_across_a_rest():
+    own = walk(n_strides=20, rate_hz=RATE_HZ, **RUN)
+    given = np.delete(own.stances, slice(8, 10))
+    rest = np.array([[own.stances[8] - 20, own.stances[9] + 20]])
+    movement = _movement(own.acc, own.gyr)
+    found = stances_in_rhythm(given, movement, own.acc, own.gyr, RATE_HZ, rest)
     assert np.array_equal(found, given)
 
 
@@ -111,4 +126,4 @@ def test_without_a_rhythm_nothing_changes():
     noise = 1.0 + 0.2 * np.random.default_rng(3).random(3000)
     still = np.tile([[0.0], [0.0], [9.80665]], 3000)
     given = np.array([100, 130, 900, 1800])
-    assert np.array_equal(stances_in_rhythm(given, noise, still, 0 * still, 100.0), given)
+    assert np.array_equal(stances_in_rhythm(given, noise, still, 0 * still, 100.0, NO_RESTS), given)

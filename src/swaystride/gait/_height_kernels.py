@@ -21,8 +21,8 @@ def shares_of_height(
     step_s: float,
     at: Index,
     reach: Index,
-    range_end_m_s2: float,
-    clipped_share: float,
+    range_ends: tuple[float, float],
+    clipped_shares: tuple[float, float],
 ) -> Array:
     """Height at given samples: 0 the lowest and 1 the highest of the stride around each.
 
@@ -38,10 +38,10 @@ def shares_of_height(
         Time step.
     at, reach : array of int, shape (k,)
         Samples in question, and one stride in samples.
-    range_end_m_s2 : float
-        A sample with an axis beyond this is clipped.
-    clipped_share : float
-        With a larger share of clipped samples no height is given.
+    range_ends : tuple of two floats
+        A sample with an axis of the acceleration (m/s²) or of the rate (rad/s) beyond is clipped.
+    clipped_shares : tuple of two floats
+        With a larger share of clipped samples, of the one or the other, no height is given.
 
     Returns
     -------
@@ -55,11 +55,13 @@ def shares_of_height(
         size = stop - first
         force = np.empty((size, 3))
         q = (1.0, 0.0, 0.0, 0.0)
-        sx, sy, sz, clipped = 0.0, 0.0, 0.0, 0
+        sx, sy, sz, n_acc, n_gyr = 0.0, 0.0, 0.0, 0, 0
         for k in range(size):
             j = first + k
-            if max(abs(acc[0, j]), abs(acc[1, j]), abs(acc[2, j])) >= range_end_m_s2:
-                clipped += 1
+            if max(abs(acc[0, j]), abs(acc[1, j]), abs(acc[2, j])) >= range_ends[0]:
+                n_acc += 1
+            if max(abs(gyr[0, j]), abs(gyr[1, j]), abs(gyr[2, j])) >= range_ends[1]:
+                n_gyr += 1
             x, y, z = rotated(q, acc[0, j], acc[1, j], acc[2, j])
             force[k, 0], force[k, 1], force[k, 2] = x, y, z
             sx, sy, sz = sx + x, sy + y, sz + z
@@ -72,7 +74,7 @@ def shares_of_height(
                 step_s,
             )
         total = math.sqrt(sx * sx + sy * sy + sz * sz)
-        if total == 0.0 or clipped > clipped_share * size:
+        if n_acc > clipped_shares[0] * size or n_gyr > clipped_shares[1] * size or total == 0.0:
             continue
         sx, sy, sz = sx / total, sy / total, sz / total
         velocity, running, mean = np.empty(size), 0.0, 0.0

@@ -29,8 +29,8 @@ _RHYTHM_HOLDS_S: Final = 3.0
 _HIGHEST_STANCE: Final = 0.4
 #: A stance may be up to this share of a stride off the middle between its neighbours.
 _UNEVEN_SHARE: Final = 0.3
-#: So many stances in a row, less one, are put back at most.
-_LONGEST_HOLE: Final = 4
+#: The longest hole in strides: beyond it the number of strides in it is no longer certain.
+_LONGEST_HOLE: Final = 10
 
 
 def stances_in_rhythm(
@@ -39,14 +39,15 @@ def stances_in_rhythm(
     acc_m_s2: ArrayLike,
     gyr_rad_s: ArrayLike,
     rate_hz: float,
+    rests: Index,
 ) -> Index:
     """Choose the stances among candidates, and put back those that a steady rhythm misses.
 
     1. Where candidates do not follow each other stride by stride, those with a high foot go: they
        are turns of the swing.
     2. Within 0.6 local stride times only the one remains that moves and turns least.
-    3. Where one to three stances are missing between two that are whole strides apart, the stillest
-       sample near each expected instant is taken.
+    3. Where one to nine stances are missing between two that are whole strides apart, without a rest
+       between them, the stillest sample near each expected instant is taken.
 
     In 1 and 2 candidates are judged together with those up to three whole strides before and after:
     at the turn of a swing a foot may for once be as still as in a stance, but not in stride after
@@ -55,14 +56,15 @@ def stances_in_rhythm(
     Parameters
     ----------
     candidates : ndarray of int, shape (k,)
-        Minima of the movement outside rests, rising; rests between them break the rhythm by
-        themselves, because a rest is longer than the strides beside it.
+        Minima of the movement outside rests, rising.
     movement_rad_s : ndarray, shape (n_samples,)
         From :func:`swaystride.gait.stillness.stillness_rad_s`.
     acc_m_s2, gyr_rad_s : array_like, shape (3, n_samples)
         Proper acceleration and angular rate in the sensor frame.
     rate_hz : float
         Sampling rate.
+    rests : ndarray of int, shape (n_rests, 2)
+        As from :func:`swaystride.gait.stillness.find_rests`.
 
     Returns
     -------
@@ -77,7 +79,8 @@ def stances_in_rhythm(
     >>> movement = 1.5 - np.cos(phase)
     >>> still = np.tile([[0.0], [9.80665], [0.0]], 1200)
     >>> given = np.array([200, 300, 500, 600])
-    >>> stances_in_rhythm(given, movement, still, 0 * still, 100.0).tolist()
+    >>> none = np.empty((0, 2), dtype=int)
+    >>> stances_in_rhythm(given, movement, still, 0 * still, 100.0, none).tolist()
     [200, 300, 400, 500, 600]
     """
     period = _stride_samples(candidates, movement_rad_s, rate_hz)
@@ -88,7 +91,7 @@ def stances_in_rhythm(
     candidates, period = candidates[~high], period[~high]
     unrest = _unrest(candidates, movement_rad_s, gyr, rate_hz)
     kept = _one_per_stride(candidates, _over_strides(candidates, unrest, period), period)
-    return _holes_filled(candidates[kept], period[kept], movement_rad_s)
+    return _holes_filled(candidates[kept], period[kept], movement_rad_s, rests)
 
 
 def _stride_samples(candidates: Index, movement: Array, rate_hz: float) -> Array:
@@ -163,13 +166,15 @@ def _one_per_stride(candidates: Index, unrest: Array, period: Array) -> NDArray[
     return kept
 
 
-def _holes_filled(stances: Index, period: Array, movement: Array) -> Index:
-    """Put back one to three stances between two that are whole strides apart."""
+def _holes_filled(stances: Index, period: Array, movement: Array, rests: Index) -> Index:
+    """Put back up to nine stances between two that are whole strides apart."""
     gap = np.diff(stances)
     stride = np.maximum(period[1:], period[:-1])
     n_strides = np.round(gap / np.maximum(stride, 1.0)).astype(np.int64)
     whole = np.abs(gap - n_strides * stride) <= _UNEVEN_SHARE * stride
-    holes = np.flatnonzero(whole & (n_strides >= 2) & (n_strides <= _LONGEST_HOLE) & (stride > 0))
+    rested = np.diff(np.searchsorted(rests[:, 0], stances)) > 0
+    few = (n_strides >= 2) & (n_strides <= _LONGEST_HOLE)
+    holes = np.flatnonzero(whole & few & (stride > 0) & ~rested)
     found = []
     for hole in holes:
         reach = round(_SAME_PHASE_SHARE * stride[hole])

@@ -172,7 +172,7 @@ def find_stances(
     most = np.maximum(maximum_filter1d(still, around, mode="nearest")[minima], depth[minima])
     is_stance = depth[minima] - least > method.stance_depth * (most - least)
     candidates = np.asarray(minima[is_stance & np.isfinite(still[minima])], dtype=np.int64)
-    return stances_in_rhythm(candidates, movement, acc_m_s2, gyr_rad_s, rate_hz)
+    return stances_in_rhythm(candidates, movement, acc_m_s2, gyr_rad_s, rate_hz, rests)
 
 
 def _odd_samples(duration_s: float, rate_hz: float) -> int:
