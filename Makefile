@@ -7,6 +7,7 @@
 #   make dry-run      what would be done                make benchmark  time and memory of the studies
 #   make benchmark-models  mixed models beside other libraries (make peers installs them)
 #   make benchmark-feet    foot trajectories beside vqf and gaitmap
+#   make benchmark-running-body  time and memory of the simulated runner
 #   make clean        remove results and generated data
 
 SHELL := bash
@@ -21,7 +22,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback intensity imu_design variants validation benchmark benchmark-models benchmark-feet peers recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback intensity imu_design variants validation benchmark benchmark-models benchmark-feet benchmark-running-body peers recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -55,6 +56,9 @@ benchmark-models: setup
 
 benchmark-feet: setup
 	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python scripts/benchmark_foot_trajectories.py
+
+benchmark-running-body: setup
+	@OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 python scripts/benchmark_running_body.py
 
 peers: .venv-peers/.complete .venv-peers-gait/.complete .venv-peers-opal/.complete
 	@python scripts/peers_opal.py

@@ -25,11 +25,11 @@ from swaystride.simulate.running_body import runner_body, usual_shares, usual_sh
 from swaystride.simulate.running_manner import RunnerManner, RunVariability, steady_run
 from swaystride.simulate.running_markers import USUAL_CAMERAS, filmed, wear_markers
 from swaystride.simulate.running_motion import RunningMotion
+from swaystride.simulate.running_recording import recorded
 from swaystride.simulate.running_run import Treadmill, run_motion
 from swaystride.simulate.running_sensors import (
     USUAL_MOUNTING,
     WornSensors,
-    recorded,
     sensor_places,
     wear_sensors,
 )

@@ -12,6 +12,7 @@ from swaystride.presentation.figure_style import figure_style, save_figure
 from swaystride.validation import (
     chest_strap_ecg,
     force_plate_models,
+    lower_limb_checks,
     lumbar_imu_standing,
     reliability_and_mixed_models,
     standing_force_plate,
@@ -56,11 +57,18 @@ def chest_strap(folder: Path) -> Validated:
     return minutes, chest_strap_ecg.heart_rate_checks(minutes, folder), figure_heart_rate
 
 
+def lower_limb(folder: Path) -> Validated:
+    """Errors, checks and figure of the walking trial with seven sensors."""
+    errors = lower_limb_checks.walking_table(folder)
+    return errors, lower_limb_checks.walking_checks(errors), lower_limb_checks.figure_walking
+
+
 DATASETS: Final[dict[str, Callable[[Path], Validated]]] = {
     standing_force_plate.DATASET: force_plate,
     lumbar_imu_standing.DATASET: lumbar,
     reliability_and_mixed_models.DATASET: reliability,
     chest_strap_ecg.DATASET: chest_strap,
+    lower_limb_checks.DATASET: lower_limb,
 }
 
 

@@ -21,6 +21,7 @@ FLOORS = {
     "sway": 3,
     "gait": 3,
     "erkf": 3,
+    "mocap": 3,
     "simulate": 4,
     "studies": 5,
     "validation": 5,
@@ -120,7 +121,14 @@ def test_public_names_are_documented(name):
 
 @pytest.mark.parametrize(
     "package",
-    ["swaystride.io", "swaystride.stats", "swaystride.sway", "swaystride.gait", "swaystride.erkf"],
+    [
+        "swaystride.io",
+        "swaystride.stats",
+        "swaystride.sway",
+        "swaystride.gait",
+        "swaystride.erkf",
+        "swaystride.mocap",
+    ],
 )
 def test_lazy_exports_resolve_and_cost_nothing(package):
     module = importlib.import_module(package)
@@ -131,7 +139,7 @@ def test_lazy_exports_resolve_and_cost_nothing(package):
 
 
 def test_importing_the_package_loads_no_heavy_library():
-    probe = "import sys, swaystride.sway, swaystride.gait, swaystride.erkf, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
+    probe = "import sys, swaystride.sway, swaystride.gait, swaystride.erkf, swaystride.mocap, swaystride.stats, swaystride.io; print('numpy' in sys.modules)"
     answer = subprocess.run(
         [sys.executable, "-c", probe],
         capture_output=True,

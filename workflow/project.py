@@ -27,6 +27,7 @@ VALIDATION_DATASETS = (
     "chest_strap_ecg",
     "running_markers_grf",
     "running_full_body_ik",
+    "lower_limb_imu_vicon_walk",
 )
 
 #: Of these, the foot recordings, which gaitmap computes too (``make peers``).

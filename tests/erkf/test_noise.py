@@ -32,7 +32,7 @@ def test_swapped_exchanges_hip_and_knee_only():
     assert RUNNING_SWAPPED.hip_axis_sd == RUNNING_PRINTED.knee_axis_sd
     assert RUNNING_SWAPPED.knee_axis_sd == RUNNING_PRINTED.hip_axis_sd
     assert RUNNING_SWAPPED.knee_centre_sd_m == RUNNING_PRINTED.knee_centre_sd_m
-    assert set(NOISE_SETS) == {"running_printed", "running_swapped", "walking"}
+    assert set(NOISE_SETS) == {"recommended", "running_printed", "running_swapped", "walking"}
 
 
 def test_white_errors_are_not_inflated():

@@ -9,10 +9,10 @@ from swaystride.simulate.foot_kinematics import point_velocity
 from swaystride.simulate.running_body import SEGMENTS
 from swaystride.simulate.running_manner import NO_VARIABILITY, RunnerManner, RunProfile, steady_run
 from swaystride.simulate.running_motion import JOINTS
+from swaystride.simulate.running_recording import ideal_signals
 from swaystride.simulate.running_run import run_motion
 from swaystride.simulate.running_sensors import (
     USUAL_MOUNTING,
-    ideal_signals,
     sensor_places,
     wear_sensors,
 )

@@ -8,12 +8,17 @@ import pytest
 from swaystride.simulate._running_points import segment_states
 from swaystride.simulate.inertial_sensor import measure
 from swaystride.simulate.running_markers import true_positions
-from swaystride.simulate.running_sensors import (
+from swaystride.simulate.running_recording import (
+    CLIPPING_RATE_HZ,
     SIMULATION_RATE_HZ,
-    USUAL_MOUNTING,
     ideal_signals,
     n_samples,
+    near_range,
     recorded,
+    with_midpoints,
+)
+from swaystride.simulate.running_sensors import (
+    USUAL_MOUNTING,
     sensor_places,
     wear_sensors,
 )
@@ -136,6 +141,53 @@ def test_ranges_and_steps_of_the_converter(runs, sensors):
         assert np.abs(counts - np.rint(counts)).max() < 1e-2
     feet = [k for k, name in enumerate(sensors.names) if name.startswith("foot")]
     assert np.abs(chunk.acc_m_s2[feet]).max() > 10.0 * GRAVITY_M_S2
+
+
+def test_a_sensor_near_its_range_clips_at_4_khz(runs, sensors):
+    motion = runs(3.0)
+    k = sensors.names.index("shank_right")
+    # A shank sensor that ends at 60 m/s², about half of its peaks.
+    low = replace(sensors.models[k], acc_range_m_s2=60.0)
+    models = (*sensors.models[:k], low, *sensors.models[k + 1 :])
+    narrow = replace(sensors, models=models)
+    usual, clipped = (
+        next(recorded(motion, worn, rate_hz=500.0, rng=np.random.default_rng(2)))
+        for worn in (sensors, narrow)
+    )
+    others = np.arange(len(models)) != k
+    np.testing.assert_array_equal(clipped.acc_m_s2[others], usual.acc_m_s2[others])
+    # Against exact signals at 4 kHz, clipped there.
+    reach = filter_reach(CLIPPING_RATE_HZ, 500.0)
+    n = 8 * (n_samples(motion, 500.0) - 1) + 1 + 2 * reach
+    exact = ideal_signals(motion, sensors.skin, CLIPPING_RATE_HZ, -reach, n)[k]
+    expected, turned = measure(
+        replace(low, acc_noise_density_m_s2_rthz=0.0, gyr_noise_density_deg_s_rthz=0.0),
+        sensors.units[k],
+        acc_m_s2=exact[:3],
+        gyr_rad_s=exact[3:],
+        rate_hz=CLIPPING_RATE_HZ,
+        output_rate_hz=500.0,
+        rng=np.random.default_rng(0),
+    )
+    noise = low.acc_noise_density_m_s2_rthz * np.sqrt(250.0)
+    assert np.abs(clipped.acc_m_s2[k] - expected).max() < 6 * noise
+    noise = np.radians(low.gyr_noise_density_deg_s_rthz) * np.sqrt(250.0)
+    assert np.abs(clipped.gyr_rad_s[k] - turned).max() < 6 * noise
+
+
+def test_signals_at_2_khz_leave_nothing_between_them(runs, sensors):
+    motion = runs(3.0)
+    coarse = ideal_signals(motion, sensors.skin, 2000.0, 0, 20001)
+    exact = ideal_signals(motion, sensors.skin, 4000.0, 0, 40001)
+    apart = np.abs(with_midpoints(coarse) - exact)
+    largest = np.abs(coarse).max(axis=2)
+    assert (np.percentile(apart, 99.5, axis=2) < 1e-3 * largest).all()
+    # The acceleration of a joint jumps a little when a foot lands or leaves.
+    assert (apart.max(axis=2) < 0.05 * largest).all()
+    # Where nothing is near its range, nothing beyond it was missed.
+    assert (np.abs(exact).max(axis=2) < 1.02 * largest).all()
+    assert not near_range(sensors, 0.5 * coarse).any()
+    assert near_range(sensors, 30.0 * coarse).all()
 
 
 def test_mountings_keep_their_limits(usual_body):

@@ -6,13 +6,15 @@ import pytest
 
 from swaystride.validation import running_real
 from swaystride.validation.running_body import (
+    JointComparison,
     RunnerComparison,
     SimulatedStride,
-    joint_table,
-    runner_checks,
+    fitted_stride,
+    matched_stride,
     simulated_stride,
-    timing_table,
+    spread_deg,
 )
+from swaystride.validation.running_checks import joint_table, runner_checks, timing_table
 from swaystride.validation.running_figures import figure_feet, figure_joints
 from swaystride.validation.running_real import (
     JOINTS,
@@ -24,6 +26,10 @@ from swaystride.validation.running_real import (
     stride_curves,
 )
 
+NAME = (
+    "{}, eight runners at 2.5 m/s, usual simulated runner: "
+    "share of the stride within 2 SD of the population"
+)
 PHASE = np.linspace(0.0, 1.0, N_PHASES)
 
 
@@ -37,6 +43,8 @@ def comparison():
         2.5,
         np.repeat(["A", "B"], 200),
         dict.fromkeys(JOINTS, shape + 2.0 * noise),
+        duty_factor=np.array([0.37, 0.4]),
+        stride_time_s=np.array([]),
     )
     trial = RealTrial(
         "A",
@@ -50,23 +58,26 @@ def comparison():
     off = np.where(PHASE > 2 / 3, 12.0, 0.0)
     angles = {"hip": shape - 7.0, "knee": shape + off, "ankle": shape}
     simulated = SimulatedStride(2.5, 0.77, 0.39, 0.1, angles, shape + 1.0)
-    return RunnerComparison([(real, simulated)], [(trial, simulated)])
+    pair = JointComparison(real, simulated, None, None, spread_deg(real))
+    return RunnerComparison([pair], [(trial, simulated)])
 
 
 def test_a_constant_is_taken_away_and_the_rest_is_judged(comparison):
     table = joint_table(comparison).set_index("joint")
     assert table.loc["hip", "constant_deg"] == pytest.approx(7.0, abs=0.1)
-    assert table.loc["hip", "share_within_2sd"] == 1.0
-    assert table.loc["knee", "share_within_2sd"] < 0.8
+    assert table.loc["hip", "share_population"] == 1.0
+    assert table.loc["knee", "share_population"] < 0.8
     assert table.loc["knee", "rms_deg"] == pytest.approx(12.0 * np.sqrt(2) / 3, rel=0.05)
-    checks = {check.quantity: check for check in runner_checks(comparison)}
-    verdicts = {
-        joint: checks[f"{joint}, eight runners at 2.5 m/s: share of the stride within 2 SD"].within
-        for joint in JOINTS
-    }
+    assert table.loc["knee", "share_strides"] == table.loc["knee", "share_population"]
+    assert table.loc["knee", "largest_deg"] == pytest.approx(8.0, abs=0.5)
+    assert table.loc["knee", "beyond_population_deg"] == pytest.approx(4.0, abs=0.7)
+    checks = {check.quantity: check for check in reversed(runner_checks(comparison))}
+    verdicts = {joint: checks[NAME.format(joint)].within for joint in JOINTS}
     assert verdicts == {"hip": "yes", "knee": "no", "ankle": "yes"}
     assert checks["stride time, s, at 2.5 m/s"].within == "yes"
-    assert checks["duty factor, at 2.5 m/s"].within == "no"
+    # Among the strides of the trial it is not, among the duty factors of the curves it is.
+    duty = [c.within for c in runner_checks(comparison) if c.quantity == "duty factor, at 2.5 m/s"]
+    assert duty == ["no", "yes"]
 
 
 def test_timing_lists_every_quantity_that_was_measured(comparison):
@@ -149,3 +160,23 @@ def test_the_simulated_stride_is_one_stride():
     for curve in (*stride.angle_deg.values(), stride.foot_pitch_deg):
         assert curve.shape == (N_PHASES,)
         assert curve[0] == pytest.approx(curve[-1], abs=1e-6)
+
+
+def test_a_matched_stride_has_the_timing_of_the_real_runner():
+    curves = dict.fromkeys(JOINTS, np.zeros((2, N_PHASES)))
+    none, times = np.array([]), np.array([0.70, 0.68])
+    assert matched_stride(RealCurves("", 3.0, np.array(["A"]), curves, none, none)) is None
+    real = RealCurves("", 3.0, np.array(["A"]), curves, np.array([0.36]), times)
+    stride = matched_stride(real)
+    assert stride.duty_factor == pytest.approx(0.36, abs=1e-3)
+    assert stride.stride_time_s == pytest.approx(0.69, abs=1e-3)
+
+
+def test_fitted_runners_stand_for_the_speeds_that_were_fitted():
+    curves = dict.fromkeys(JOINTS, np.zeros((2, N_PHASES)))
+    none = np.array([])
+    real = RealCurves("", 3.5, np.array(["A"]), curves, none, none)
+    fitted, usual = fitted_stride(real), simulated_stride(3.5)
+    assert fitted.duty_factor - usual.duty_factor == pytest.approx(0.008, abs=1e-3)
+    assert fitted.foot_pitch_deg.min() < usual.foot_pitch_deg.min() - 4.0
+    assert fitted_stride(RealCurves("", 2.5, np.array(["A"]), curves, none, none)) is None

@@ -3,47 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swaystride.errors import RecordingError
+from swaystride.lower_limb_joints import ANGLE_SIGNS as ANGLE_SIGNS
+from swaystride.lower_limb_joints import LOWER_LIMB_JOINTS as LOWER_LIMB_JOINTS
+from swaystride.lower_limb_joints import SEGMENTS as SEGMENTS
+from swaystride.lower_limb_joints import JointKind, Side
 
 Array = NDArray[np.float64]
-JointKind = Literal["hip", "knee", "ankle"]
-Side = Literal["right", "left"]
-
-#: Order of segments in every array (methods §0.2).
-SEGMENTS: Final = (
-    "pelvis",
-    "right_thigh",
-    "left_thigh",
-    "right_shank",
-    "left_shank",
-    "right_foot",
-    "left_foot",
-)
-#: Kind, side, proximal and distal segment of the six joints of the lower limbs.
-LOWER_LIMB_JOINTS: Final[tuple[tuple[JointKind, Side, str, str], ...]] = (
-    ("hip", "right", "pelvis", "right_thigh"),
-    ("hip", "left", "pelvis", "left_thigh"),
-    ("knee", "right", "right_thigh", "right_shank"),
-    ("knee", "left", "left_thigh", "left_shank"),
-    ("ankle", "right", "right_shank", "right_foot"),
-    ("ankle", "left", "left_shank", "left_foot"),
-)
-#: Factors on alpha, beta, gamma of the Cardan sequence Z-X'-Y'' with z to the right on both sides,
-#: so that flexion (dorsiflexion), adduction (inversion) and internal rotation are positive
-#: (methods §1.8).
-ANGLE_SIGNS: Final[dict[tuple[JointKind, Side], tuple[float, float, float]]] = {
-    ("hip", "right"): (1.0, 1.0, 1.0),
-    ("hip", "left"): (1.0, -1.0, -1.0),
-    ("knee", "right"): (-1.0, 1.0, 1.0),
-    ("knee", "left"): (-1.0, -1.0, -1.0),
-    ("ankle", "right"): (1.0, 1.0, 1.0),
-    ("ankle", "left"): (1.0, -1.0, -1.0),
-}
 
 
 @dataclass(frozen=True, eq=False)

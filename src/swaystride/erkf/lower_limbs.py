@@ -20,14 +20,12 @@ from swaystride.erkf.options import FilterOptions
 from swaystride.erkf.passes import Estimate, kernel_model, run_passes
 from swaystride.erkf.start import Start
 from swaystride.errors import RecordingError
+from swaystride.lower_limb_joints import ANGLES as ANGLES
 from swaystride.recording import AXES, QUATERNION_COMPONENTS, Recording
 from swaystride.rotations import quaternion_from_matrix
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-#: Names of the three angles of a joint; at the ankle dorsiflexion, inversion, internal rotation.
-ANGLES = ("flexion", "adduction", "internal_rotation")
 
 
 def estimate_lower_limbs(

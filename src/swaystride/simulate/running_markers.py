@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from swaystride.simulate._running_points import marker_positions
 from swaystride.simulate.running_body import SEGMENTS, RunnerBody
 from swaystride.simulate.running_motion import RunningMotion
-from swaystride.simulate.running_sensors import SensorPlace, WornSensors, n_samples, place_point_m
+from swaystride.simulate.running_recording import n_samples
+from swaystride.simulate.running_sensors import SensorPlace, WornSensors, place_point_m
 from swaystride.simulate.running_tissue import SkinPoints, TissueSize, skin_points
 
 Array = NDArray[np.float64]

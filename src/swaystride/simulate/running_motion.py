@@ -14,7 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from swaystride.rotations import cardan_zxy_from_matrix
+from swaystride.lower_limb_joints import SEGMENTS as LOWER_LIMB_SEGMENTS
+from swaystride.lower_limb_joints import lower_limb_angles
 from swaystride.simulate._running_coordinates import impact_pulse
 from swaystride.simulate._running_kernel import BodyTables
 from swaystride.simulate._running_points import segment_states
@@ -90,18 +91,9 @@ class BodyStates:
             For every joint of :data:`JOINTS` flexion (dorsiflexion), adduction (varus, inversion)
             and internal rotation; methods, section 1.8.
         """
-        angles = {}
-        for name, proximal, distal in JOINTS:
-            r = self.r_world_from_segment
-            relative = np.einsum("nji,njk->nik", r[:, proximal], r[:, distal])
-            value = cardan_zxy_from_matrix(relative)
-            value[:, [0, 2]] = np.unwrap(value[:, [0, 2]], axis=0)
-            if name.startswith("knee"):
-                value[:, 0] *= -1.0
-            if name.endswith("left"):
-                value[:, 1:] *= -1.0
-            angles[name] = value
-        return angles
+        # JOINTS and the first seven segments stand in the order of the definition
+        angles = lower_limb_angles(self.r_world_from_segment[:, : len(LOWER_LIMB_SEGMENTS)])
+        return {name: angles[:, row] for row, (name, _, _) in enumerate(JOINTS)}
 
 
 @dataclass(frozen=True)

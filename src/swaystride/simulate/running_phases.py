@@ -12,7 +12,7 @@ from swaystride.simulate._running_kernel import N_COORDINATES
 from swaystride.simulate.foot_spline import PiecewiseQuintic
 from swaystride.simulate.running_manner import RunVariability, curves
 from swaystride.simulate.running_steps import RunSteps, correlated
-from swaystride.simulate.running_swing import phase_pieces, step_phase_pieces
+from swaystride.simulate.running_stride_phase import phase_pieces, step_phase_pieces
 
 Array = NDArray[np.float64]
 

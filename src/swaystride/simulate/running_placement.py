@@ -12,9 +12,9 @@ from swaystride.simulate.foot_pieces import foot_motion
 from swaystride.simulate.running_body import RunnerBody
 from swaystride.simulate.running_manner import NO_VARIABILITY, RunnerManner, steady_run
 from swaystride.simulate.running_pelvis import pelvis_height, pelvis_steps
+from swaystride.simulate.running_seeds import seed_angles, seed_phase
 from swaystride.simulate.running_stances import run_stances
 from swaystride.simulate.running_steps import LEAD_STRIDES, run_path, run_steps
-from swaystride.simulate.running_swing import phase_pieces, seed_angles
 
 Array = NDArray[np.float64]
 
@@ -105,13 +105,13 @@ def _at_speed(
     bobbing = pelvis_height(
         pelvis_steps(steps.contact_s, steps.toe_off_s, np.zeros(len(steps))), time
     )
-    phase = phase_pieces(steps.contact_s[::2], steps.toe_off_s[::2])(time)[0]
+    phase = seed_phase(steps.contact_s[::2], steps.toe_off_s[::2], speed_m_s)(time)[0]
     ranges = [
         (steps.gait[f"{joint}_seed_range_rad"] * steps.manner[f"{joint}_range"])[step]
         for joint in ("hip", "knee")
     ]
     way = (ankle[0] - path.x(time)[0], ankle[1], ankle[2] - bobbing)
-    ahead, height = _closest(body, way, *seed_angles(ranges[0], ranges[1], phase))
+    ahead, height = _closest(body, way, *seed_angles(ranges[0], ranges[1], phase, speed_m_s))
     return ahead + manner.foot_ahead_m, height - manner.crouch_m
 
 

@@ -1,8 +1,7 @@
-"""Inertial sensors worn by a runner: where they sit, and what they record."""
+"""Inertial sensors worn by a runner: where they sit, and how they are put on."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -13,18 +12,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from swaystride.rotations import exp_map
-from swaystride.simulate._running_points import sensor_signals
 from swaystride.simulate.inertial_sensor import (
     OPAL_HIGH_RANGE,
     SensorModel,
     SensorUnit,
     draw_unit,
-    measure,
 )
 from swaystride.simulate.running_body import SEGMENTS, RunnerBody
-from swaystride.simulate.running_motion import RunningMotion
 from swaystride.simulate.running_tissue import SkinPoints, TissueSize, skin_points
-from swaystride.simulate.sampling import decimation_factor, filter_reach
 from swaystride.units import GRAVITY_M_S2, RAD_PER_DEG
 
 Array = NDArray[np.float64]
@@ -35,9 +30,6 @@ OPAL_LOW_RANGE: Final = replace(
     acc_range_m_s2=16.0 * GRAVITY_M_S2,
     acc_noise_density_m_s2_rthz=120e-6 * GRAVITY_M_S2,
 )
-
-#: Rate of the simulation: the elements clip and vibrate long before they are sampled (issue: ≥ 2 kHz).
-SIMULATION_RATE_HZ: Final = 2000.0
 
 #: Nominal axes of a sensor: x forward, y left, z up, when the person stands.
 R_NOMINAL_FROM_SEGMENT: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -209,122 +201,3 @@ def place_point_m(place: SensorPlace, body: RunnerBody) -> Array:
     length = lengths.get(name.removesuffix("_right").removesuffix("_left"), 0.0)
     outward = -place.outward_m if name.endswith("_left") else place.outward_m
     return np.array([place.ahead_m, place.up_m + place.up_share * length, outward])
-
-
-@dataclass(frozen=True)
-class SensorChunk:
-    """Part of a recording.
-
-    Parameters
-    ----------
-    first : int
-        Index of its first sample in the recording.
-    acc_m_s2, gyr_rad_s : ndarray, shape (n_sensors, 3, n)
-        As the sensors report.
-    """
-
-    first: int
-    acc_m_s2: NDArray[np.float32]
-    gyr_rad_s: NDArray[np.float32]
-
-
-def n_samples(motion: RunningMotion, rate_hz: float) -> int:
-    """Samples of a recording of a motion.
-
-    Parameters
-    ----------
-    motion : RunningMotion
-        What is recorded.
-    rate_hz : float
-        Sampling rate.
-    """
-    return int(np.floor(motion.duration_s * rate_hz + 1e-9))
-
-
-def recorded(
-    motion: RunningMotion,
-    sensors: WornSensors,
-    *,
-    rate_hz: float,
-    rng: np.random.Generator,
-    chunk_s: float = 20.0,
-) -> Iterator[SensorChunk]:
-    """Record a motion, part by part, so that the memory does not grow with its length.
-
-    Parameters
-    ----------
-    motion : RunningMotion
-        What happens.
-    sensors : WornSensors
-        What records it.
-    rate_hz : float
-        Output rate; the simulation runs at 2 kHz, of which it is an integer part.
-    rng : numpy.random.Generator
-        Source of the noise.
-    chunk_s : float
-        Length of the parts; it decides the order of the random numbers.
-
-    Yields
-    ------
-    SensorChunk
-    """
-    factor = decimation_factor(SIMULATION_RATE_HZ, rate_hz)
-    reach = filter_reach(SIMULATION_RATE_HZ, rate_hz)
-    total = n_samples(motion, rate_hz)
-    every = max(1, round(chunk_s * rate_hz))
-    for first in range(0, total, every):
-        n = min(every, total - first)
-        fine = (n - 1) * factor + 1 + 2 * reach
-        ideal = ideal_signals(
-            motion, sensors.skin, SIMULATION_RATE_HZ, first * factor - reach, fine
-        )
-        acc = np.empty((len(sensors.names), 3, n), dtype=np.float32)
-        gyr = np.empty_like(acc)
-        for k, (model, unit) in enumerate(zip(sensors.models, sensors.units, strict=True)):
-            acc[k], gyr[k] = measure(
-                model,
-                unit,
-                acc_m_s2=ideal[k, :3],
-                gyr_rad_s=ideal[k, 3:],
-                rate_hz=SIMULATION_RATE_HZ,
-                output_rate_hz=rate_hz,
-                rng=rng,
-            )
-        yield SensorChunk(first, acc, gyr)
-
-
-def ideal_signals(
-    motion: RunningMotion, skin: SkinPoints, rate_hz: float, first: int, n: int
-) -> Array:
-    """Signals of perfect sensors in axes of their segment (turned with the soft tissue).
-
-    Parameters
-    ----------
-    motion : RunningMotion
-        What happens.
-    skin : SkinPoints
-        Where the sensors are.
-    rate_hz : float
-        Sampling rate; sample 0 is at the begin of the recording.
-    first, n : int
-        First sample and number of samples.
-
-    Returns
-    -------
-    ndarray, shape (n_sensors, 6, n)
-        Proper acceleration (m/s²) and angular velocity (rad/s).
-    """
-    out = np.empty((len(skin.rows), 6, n))
-    sensor_signals(
-        motion.tables,
-        0.0,
-        rate_hz,
-        first,
-        n,
-        skin.rows,
-        skin.points_m,
-        skin.tissue,
-        GRAVITY_M_S2,
-        out,
-    )
-    return out

@@ -10,135 +10,24 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from swaystride.simulate.foot_motion import FootMotion
-from swaystride.simulate.foot_spline import PiecewiseQuintic, joined, least_jerk
+from swaystride.simulate.foot_spline import joined, least_jerk
 from swaystride.simulate.running_body import RunnerBody
-from swaystride.simulate.running_manner import curves, fourier
 from swaystride.simulate.running_pelvis import pelvis_height
+from swaystride.simulate.running_seeds import seed_phase, seed_way
 from swaystride.simulate.running_steps import RunPath, RunSteps
 
 Array = NDArray[np.float64]
 
 #: Shares of the swing at which the way of the ankle is prescribed.
 SWING_KNOTS: Final = (0.12, 0.3, 0.5, 0.7, 0.88)
-#: Phase of the toe-off in the mean curves, of runners at 2.5 m/s with a duty factor of 0.36, and how
-#: it falls with the duty factor: fitted by eye to the sagittal curves of running_markers_grf at 2.5,
-#: 3.5 and 4.5 and of running_full_body_ik at 3.96 m/s; spec §9.1 found 0.33 best at 0.28.
-SEED_TOE_OFF: Final = 0.365
-SEED_DUTY: Final = 0.36
-SEED_SLOPE: Final = 0.45
-#: Mean flexion of hip and knee over the range of the curves: 12.1° of 48°, 42.7° of 81° (spec §9.1).
-HIP_MEAN: Final = 12.13 / 48.0
-KNEE_MEAN: Final = 42.71 / 81.0
+#: Share of the swing in which the way at toe-off is forgotten, and the way at first touch prepared;
+#: chosen on the curves of running_markers_grf.
+SETTLING_SHARE: Final = 0.7
 #: The sole stays at least this far above the ground in the middle of a swing, m.
 LEAST_CLEARANCE_M: Final = 0.015
-
-
-def phase_pieces(contact_s: ArrayLike, toe_off_s: ArrayLike) -> PiecewiseQuintic:
-    """Phase of the strides of one foot: k at contact k, about k + 0.35 at toe-off, smooth between.
-
-    Parameters
-    ----------
-    contact_s, toe_off_s : array_like, shape (n,)
-        First and last touches in turn.
-
-    Returns
-    -------
-    PiecewiseQuintic
-        2 (n − 1) pieces from the first to the last contact.
-    """
-    contact, toe_off = np.asarray(contact_s), np.asarray(toe_off_s)
-    n = len(contact)
-    knots = np.stack([contact, toe_off], axis=-1).ravel()[:-1]
-    duty = (toe_off - contact)[:-1] / np.diff(contact)
-    leaving = SEED_TOE_OFF + SEED_SLOPE * (np.append(duty, duty[-1]) - SEED_DUTY)
-    values = np.stack([np.arange(n), np.arange(n) + leaving], axis=-1).ravel()[:-1]
-    slope = np.diff(values) / np.diff(knots)
-    rate = np.empty_like(values)
-    # The harmonic mean of neighbouring slopes keeps the phase rising; a foot leaves as it stood.
-    rate[1:-1] = 2.0 * slope[1:] * slope[:-1] / (slope[1:] + slope[:-1])
-    rate[0], rate[-1] = slope[0], slope[-1]
-    rate[1::2] = slope[0::2]
-    return _through(knots, values, rate)
-
-
-def step_phase_pieces(contact_s: ArrayLike) -> PiecewiseQuintic:
-    """Phase of the strides that grows by a half from step to step.
-
-    Parameters
-    ----------
-    contact_s : array_like, shape (n,)
-        First touches of both feet in turn, the right one first.
-
-    Returns
-    -------
-    PiecewiseQuintic
-        n − 1 pieces from the first to the last contact.
-    """
-    contact = np.asarray(contact_s, dtype=np.float64)
-    slope = 0.5 / np.diff(contact)
-    rate = np.empty_like(contact)
-    rate[1:-1] = 2.0 * slope[1:] * slope[:-1] / (slope[1:] + slope[:-1])
-    rate[0], rate[-1] = slope[0], slope[-1]
-    halves = np.asarray(0.5 * np.arange(len(contact)), dtype=np.float64)
-    return _through(contact, halves, rate)
-
-
-def _through(knots: Array, values: Array, rate: Array) -> PiecewiseQuintic:
-    """Quintic pieces between knots with these values and rates and no second derivative there."""
-    states = np.stack([values, rate, np.zeros_like(values)], axis=-1)
-    pairs = np.stack([states[:-1], states[1:]], axis=1)
-    both = np.stack([knots[:-1], knots[1:]], axis=1)
-    return PiecewiseQuintic(knots[:-1], least_jerk(both, pairs)[:, 0])
-
-
-def seed_angles(
-    hip_range_rad: ArrayLike, knee_range_rad: ArrayLike, phase: ArrayLike
-) -> tuple[Array, Array]:
-    """Flexion of thigh (against the vertical) and knee in the mean curves of real runners.
-
-    Parameters
-    ----------
-    hip_range_rad, knee_range_rad : array_like
-        Ranges of the flexion.
-    phase : array_like
-        Phase of the stride.
-
-    Returns
-    -------
-    thigh_rad, knee_rad : ndarray
-    """
-    shapes = curves()
-    phase = np.asarray(phase, dtype=np.float64)
-    hip = fourier(shapes["hip_flexion"], phase.ravel())[0].reshape(phase.shape) + HIP_MEAN
-    knee = fourier(shapes["knee_flexion"], phase.ravel())[0].reshape(phase.shape) + KNEE_MEAN
-    return np.asarray(hip_range_rad) * hip, np.asarray(knee_range_rad) * knee
-
-
-def seed_way(
-    body: RunnerBody, hip_range_rad: ArrayLike, knee_range_rad: ArrayLike, phase: ArrayLike
-) -> tuple[Array, Array]:
-    """Ankle from the hip, forward and up, for the mean curves of hip and knee.
-
-    Parameters
-    ----------
-    body : RunnerBody
-        Lengths.
-    hip_range_rad, knee_range_rad : array_like
-        Ranges of the flexion.
-    phase : array_like
-        Phase of the stride.
-
-    Returns
-    -------
-    forward_m, up_m : ndarray
-    """
-    thigh, knee = seed_angles(hip_range_rad, knee_range_rad, phase)
-    shank = thigh - knee
-    forward = body.thigh_m * np.sin(thigh) + body.shank_m * np.sin(shank)
-    return forward, -body.thigh_m * np.cos(thigh) - body.shank_m * np.cos(shank)
 
 
 @dataclass(frozen=True)
@@ -147,12 +36,15 @@ class SwingAims:
 
     Parameters
     ----------
+    speed_m_s : ndarray, shape (n,)
+        Speed.
     hip_range_rad, knee_range_rad : ndarray, shape (n,)
         Ranges of flexion.
     noise_m : ndarray, shape (n, 2)
         Scatter of the ankle in the middle of the swing, forward and up.
     """
 
+    speed_m_s: Array
     hip_range_rad: Array
     knee_range_rad: Array
     noise_m: Array
@@ -172,6 +64,7 @@ def swing_aims(steps: RunSteps, side: int, noise_m: Array) -> SwingAims:
     """
     own = slice(side, None, 2)
     return SwingAims(
+        steps.speed_m_s[own],
         (steps.gait["hip_seed_range_rad"] * steps.manner["hip_range"])[own],
         (steps.gait["knee_seed_range_rad"] * steps.manner["knee_range"])[own],
         noise_m[own],
@@ -211,9 +104,13 @@ def with_seed_swings(
     x, y, heading = (a.reshape(times.shape) for a in (x, y, heading))
     hips = pelvis_height(pelvis, times)
     touches = np.concatenate([[off[0] - 0.3], contact])
-    phase = phase_pieces(touches, np.append(off, contact[-1] + 0.3))(times.ravel())[0]
+    phase = seed_phase(touches, np.append(off, contact[-1] + 0.3), aims.speed_m_s)
     forward, up = seed_way(
-        body, aims.hip_range_rad[:-1, None], aims.knee_range_rad[:-1, None], phase.reshape(x.shape)
+        body,
+        aims.hip_range_rad[:-1, None],
+        aims.knee_range_rad[:-1, None],
+        phase(times.ravel())[0].reshape(x.shape),
+        aims.speed_m_s[:-1, None],
     )
     cosine, sine = np.cos(heading), np.sin(heading)
 
@@ -224,11 +121,12 @@ def with_seed_swings(
 
     first, last = from_hips(begin, 0), from_hips(end, -1)
     # What the seeds miss at both ends is made up for gradually.
-    blend = shares**3 * (10.0 - 15.0 * shares + 6.0 * shares**2)
+    left = 1.0 - _smooth_step(shares / SETTLING_SHARE)
+    near = _smooth_step(1.0 - (1.0 - shares) / SETTLING_SHARE)
 
     def bent(seed: Array, axis: int) -> Array:
         start, stop = first[axis] - seed[:, 0], last[axis] - seed[:, -1]
-        return seed + start[:, None] * (1.0 - blend) + stop[:, None] * blend
+        return seed + start[:, None] * left + stop[:, None] * near
 
     middle = np.sin(np.pi * shares)
     forward = bent(forward, 0) + aims.noise_m[:-1, :1] * middle
@@ -244,3 +142,9 @@ def with_seed_swings(
         states[:, 0], states[:, -1] = begin[axis].T, end[axis].T
         coordinates.append(joined(times[:, :-1], least_jerk(times, states)))
     return replace(motion, swing=(coordinates[0], coordinates[1], coordinates[2]))
+
+
+def _smooth_step(share: Array) -> Array:
+    """From 0 to 1 with least jerk."""
+    x = np.clip(share, 0.0, 1.0)
+    return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x**2))

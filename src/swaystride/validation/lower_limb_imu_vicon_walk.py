@@ -9,8 +9,8 @@ Three estimates, each compared after one constant per angle has been removed:
 * ``erkf_imu_only``: everything from the sensors.
 
 Both filters run as smoothers with a named set of noise and options. No number was fitted to this
-trial, but a choice among the named sets on it is a choice made in sample: the three sets differ by
-degrees in hip and knee adduction. Limits: soft tissue, bad markers on the left thigh, an optical
+trial; the sets differ by degrees in hip and knee adduction, so that a choice among them on it would
+be a choice in sample. The recommended set was chosen on the simulated running body. Limits: soft tissue, bad markers on the left thigh, an optical
 ankle without inversion, one trial.
 """
 
@@ -32,7 +32,6 @@ from swaystride.erkf.alignment import (
     straight_samples,
 )
 from swaystride.erkf.body import (
-    ANGLE_SIGNS,
     LOWER_LIMB_JOINTS,
     SEGMENTS,
     Body,
@@ -45,9 +44,9 @@ from swaystride.erkf.options import FilterOptions
 from swaystride.erkf.start import START_AT_REST, START_IN_MOTION, Start
 from swaystride.gait.foot_methods import RECOMMENDED
 from swaystride.gait.zero_velocity import find_zero_velocity
+from swaystride.lower_limb_joints import lower_limb_angles
 from swaystride.recording import make_recording
 from swaystride.rotations import (
-    cardan_zxy_from_matrix,
     exp_map,
     matrix_from_quaternion,
     quaternion_from_matrix,
@@ -135,12 +134,7 @@ def angles_deg(r_world_from_anatomical: Array) -> Array:
     ndarray, shape (n, 6, 3)
         Degrees.
     """
-    out = []
-    for (one, two), (kind, side, _, _) in zip(_PAIRS, LOWER_LIMB_JOINTS, strict=True):
-        r = np.swapaxes(r_world_from_anatomical[:, one], 1, 2) @ r_world_from_anatomical[:, two]
-        angles = np.unwrap(cardan_zxy_from_matrix(r), axis=0)
-        out.append(angles * np.array(ANGLE_SIGNS[kind, side]))
-    return np.stack(out, axis=1) * DEG_PER_RAD
+    return lower_limb_angles(r_world_from_anatomical) * DEG_PER_RAD
 
 
 def vqf_orientation(acc_m_s2: Array, gyr_rad_s: Array) -> Array:

@@ -9,9 +9,15 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from swaystride.simulate.foot_anchors import gait_anchors
 from swaystride.simulate.running_body import SEGMENTS, runner_body, usual_shares, usual_shoe
-from swaystride.simulate.running_manner import NO_VARIABILITY, RunnerManner, steady_run
-from swaystride.simulate.running_run import run_motion
+from swaystride.simulate.running_manner import (
+    NO_VARIABILITY,
+    RunnerManner,
+    manner_anchors,
+    steady_run,
+)
+from swaystride.simulate.running_run import REFERENCE_HEIGHT_M, run_motion
 from swaystride.validation.running_real import (
     FULL_BODY,
     JOINTS,
@@ -26,12 +32,11 @@ from swaystride.validation.running_real import (
     mean_curves,
     stride_curves,
 )
-from swaystride.validation.summary import Check, reported
 
 #: Mean stature of the runners of ``running_markers_grf``, to whom the simulated one is compared, m.
 HEIGHT_M: Final = 1.74
-#: Least share of the stride that must lie within two standard deviations of the real strides.
-LEAST_SHARE: Final = 0.9
+#: Speed of ``running_full_body_ik``.
+FULL_BODY_SPEED_M_S: Final = 3.96
 
 
 @dataclass(frozen=True)
@@ -57,32 +62,59 @@ class SimulatedStride:
 
 
 @dataclass(frozen=True)
-class RunnerComparison:
-    """Real and simulated strides.
+class JointComparison:
+    """Joint curves at one speed.
 
     Parameters
     ----------
-    curves : list of tuple of RealCurves, SimulatedStride
-        Joint curves at matched speed; the first pair is the one that is judged.
+    real : RealCurves
+        Strides of real runners.
+    usual : SimulatedStride
+        The usual simulated runner of that speed, who knows nothing of them.
+    matched : SimulatedStride or None
+        The same with the duty factor or the stride time of the real ones, if the files have it.
+    fitted : SimulatedStride or None
+        A runner whose manner was fitted to these curves, if there is one.
+    population_sd_deg : dict of str to ndarray, shape (N_PHASES,)
+        Standard deviation over strides and runners of a population; empty if there is none at hand.
+    """
+
+    real: RealCurves
+    usual: SimulatedStride
+    matched: SimulatedStride | None
+    fitted: SimulatedStride | None
+    population_sd_deg: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class RunnerComparison:
+    """Real and simulated strides of one data set.
+
+    Parameters
+    ----------
+    curves : list of JointComparison
+        Joint curves at matched speed.
     trials : list of tuple of RealTrial, SimulatedStride
         Timing, bobbing and foot pitch at matched speed.
     """
 
-    curves: list[tuple[RealCurves, SimulatedStride]]
+    curves: list[JointComparison]
     trials: list[tuple[RealTrial, SimulatedStride]]
 
 
-def simulated_stride(speed_m_s: float) -> SimulatedStride:
-    """Stride of the usual runner at a speed, without scatter.
+def simulated_stride(speed_m_s: float, manner: RunnerManner | None = None) -> SimulatedStride:
+    """Stride of a runner at a speed, without scatter.
 
     Parameters
     ----------
     speed_m_s : float
         Speed.
+    manner : RunnerManner, optional
+        How the runner differs from the usual one, who is the default.
     """
     motion = run_motion(
         runner_body(HEIGHT_M, 70.0, shares=usual_shares(), shoe=usual_shoe()),
-        RunnerManner(),
+        RunnerManner() if manner is None else manner,
         steady_run(6.0, speed_m_s),
         duration_s=6.0,
         variability=NO_VARIABILITY,
@@ -106,22 +138,94 @@ def simulated_stride(speed_m_s: float) -> SimulatedStride:
     )
 
 
-def compare_runners(folder: Path) -> RunnerComparison:
-    """Read the real runners and simulate one at each of their speeds.
+def matched_stride(real: RealCurves) -> SimulatedStride | None:
+    """Stride with the duty factor and the stride time of real runners, as far as they are known.
+
+    Parameters
+    ----------
+    real : RealCurves
+        Of whom.
+    """
+    scale = float(np.sqrt(HEIGHT_M / REFERENCE_HEIGHT_M))
+    usual = gait_anchors().at([real.speed_m_s]) | manner_anchors().at([real.speed_m_s])
+    manner = {}
+    if len(real.duty_factor):
+        manner["duty_factor"] = float(np.median(real.duty_factor) - usual["duty_factor"][0])
+    if len(real.stride_time_s):
+        time = float(np.median(real.stride_time_s))
+        manner["stride_time"] = time / (scale * float(usual["stride_time_s"][0]))
+    return simulated_stride(real.speed_m_s, RunnerManner(**manner)) if manner else None
+
+
+def fitted_stride(real: RealCurves) -> SimulatedStride | None:
+    """Stride of a runner whose manner was fitted to these curves (``running_fitted.csv``).
+
+    It shows how near the inputs that shape a person bring the body to single people; being fitted
+    to what it is compared with, it proves nothing else.
+
+    Parameters
+    ----------
+    real : RealCurves
+        Of whom.
+
+    Returns
+    -------
+    SimulatedStride or None
+        None at a speed without a fit.
+    """
+    table = pd.read_csv(Path(__file__).with_name("running_fitted.csv"), index_col="speed_m_s")
+    if real.speed_m_s not in table.index:
+        return None
+    values = table.drop(columns="source")
+    row = values.to_numpy(dtype=np.float64)[list(table.index).index(real.speed_m_s)]
+    manner = RunnerManner(**dict(zip(values.columns, row.tolist(), strict=True)))
+    return simulated_stride(real.speed_m_s, manner)
+
+
+def spread_deg(real: RealCurves) -> dict[str, FloatArray]:
+    """Standard deviation of every joint over strides (of all runners) at each phase.
+
+    Parameters
+    ----------
+    real : RealCurves
+        Strides.
+    """
+    return {joint: real.angle_deg[joint].std(axis=0, ddof=1) for joint in JOINTS}
+
+
+def compare_runners(folder: Path, dataset: str) -> RunnerComparison:
+    """Read the real runners of a data set and simulate one at each of their speeds.
+
+    The population is that of the eight runners at 2.5 m/s, at every speed: there are no more than
+    two faster people.
 
     Parameters
     ----------
     folder : Path
         Folder with public recordings.
+    dataset : str
+        ``running_markers_grf`` or ``running_full_body_ik``.
     """
-    fast = simulated_stride(3.96)
-    peak = float(np.argmax(fast.angle_deg["knee"])) / (N_PHASES - 1)
-    strides, trial = full_body(folder, peak)
-    slow = simulated_stride(2.5)
-    curves = [(stride_curves(folder), slow)]
-    curves += [(mean, simulated_stride(mean.speed_m_s)) for mean in mean_curves(folder)[1:]]
-    trials = [(real, slow) for real in marker_trials(folder)]
-    return RunnerComparison([*curves, (strides, fast)], [*trials, (trial, fast)])
+    population = stride_curves(folder) if (folder / MARKERS).is_dir() else None
+    spread = {} if population is None else spread_deg(population)
+    if dataset == FULL_BODY:
+        usual = simulated_stride(FULL_BODY_SPEED_M_S)
+        peak = float(np.argmax(usual.angle_deg["knee"])) / (N_PHASES - 1)
+        real, trial = full_body(folder, peak)
+        curves = [JointComparison(real, usual, matched_stride(real), fitted_stride(real), spread)]
+        return RunnerComparison(curves, [(trial, usual)])
+    reals = [stride_curves(folder) if population is None else population, *mean_curves(folder)[1:]]
+    curves = [
+        JointComparison(
+            real,
+            simulated_stride(real.speed_m_s),
+            matched_stride(real),
+            fitted_stride(real),
+            spread,
+        )
+        for real in reals
+    ]
+    return RunnerComparison(curves, [(real, curves[0].usual) for real in marker_trials(folder)])
 
 
 def offset_curve(real: RealCurves, simulated: SimulatedStride, joint: str) -> FloatArray:
@@ -139,126 +243,3 @@ def offset_curve(real: RealCurves, simulated: SimulatedStride, joint: str) -> Fl
     mean = real.angle_deg[joint].mean(axis=0)
     curve = simulated.angle_deg[joint]
     return np.asarray(curve + np.mean(mean - curve))
-
-
-def joint_table(comparison: RunnerComparison) -> pd.DataFrame:
-    """Agreement of every joint at every speed.
-
-    Parameters
-    ----------
-    comparison : RunnerComparison
-        Real and simulated strides.
-
-    Returns
-    -------
-    DataFrame
-        ``real``, ``joint``, ``constant_deg`` (added to the simulated curve), ``rms_deg`` of what is
-        left, ``share_within_2sd`` of the stride, ``range_real_deg`` (mean over strides) and
-        ``range_simulated_deg``.
-    """
-    rows = []
-    for real, simulated in comparison.curves:
-        for joint in JOINTS:
-            strides = real.angle_deg[joint]
-            mean, sd = strides.mean(axis=0), strides.std(axis=0, ddof=1)
-            curve = offset_curve(real, simulated, joint)
-            rows.append(
-                {
-                    "real": real.label,
-                    "joint": joint,
-                    "constant_deg": float(np.mean(curve - simulated.angle_deg[joint])),
-                    "rms_deg": float(np.sqrt(np.mean((curve - mean) ** 2))),
-                    "share_within_2sd": float(np.mean(np.abs(curve - mean) <= 2.0 * sd)),
-                    "range_real_deg": float(np.mean(np.ptp(strides, axis=1))),
-                    "range_simulated_deg": float(np.ptp(curve)),
-                }
-            )
-    return pd.DataFrame(rows)
-
-
-def timing_table(comparison: RunnerComparison) -> pd.DataFrame:
-    """Timing, bobbing and foot pitch of every trial beside the simulated runner.
-
-    Parameters
-    ----------
-    comparison : RunnerComparison
-        Real and simulated strides.
-
-    Returns
-    -------
-    DataFrame
-        ``real``, ``quantity``, least and largest stride, median, and ``simulated``.
-    """
-    rows = []
-    for real, simulated in comparison.trials:
-        mean_pitch = real.foot_pitch_deg.mean(axis=0)
-        for quantity, values, ours in (
-            ("stride time, s", real.stride_time_s, simulated.stride_time_s),
-            ("duty factor", real.duty_factor, simulated.duty_factor),
-            ("vertical range of the pelvis, m", real.oscillation_m, simulated.oscillation_m),
-            (
-                "lowest foot pitch, deg",
-                real.foot_pitch_deg.min(axis=1),
-                float(simulated.foot_pitch_deg.min()),
-            ),
-            (
-                "foot pitch, RMS from the mean real stride, deg",
-                np.sqrt(np.mean((real.foot_pitch_deg - mean_pitch) ** 2, axis=1)),
-                float(np.sqrt(np.mean((simulated.foot_pitch_deg - mean_pitch) ** 2))),
-            ),
-        ):
-            if np.isnan(values).all():
-                continue
-            rows.append(
-                {
-                    "real": f"{real.label} at {real.speed_m_s:g} m/s",
-                    "quantity": quantity,
-                    "least": float(values.min()),
-                    "median": float(np.median(values)),
-                    "largest": float(values.max()),
-                    "simulated": ours,
-                }
-            )
-    return pd.DataFrame(rows)
-
-
-def runner_checks(comparison: RunnerComparison) -> list[Check]:
-    """Verdicts: joint curves of the first pair, timing within the range of the real strides.
-
-    Parameters
-    ----------
-    comparison : RunnerComparison
-        Real and simulated strides.
-    """
-    checks = []
-    joints = joint_table(comparison)
-    judged = comparison.curves[0][0].label
-    for row in joints.itertuples(index=False):
-        quantity = f"{row.joint}, {row.real}: share of the stride within 2 SD"
-        dataset = FULL_BODY if "one runner" in str(row.real) else MARKERS
-        share = float(str(row.share_within_2sd))
-        if row.real == judged:
-            # 1 is reached when all of the stride is within; 0.9 is enough.
-            checks.append(Check(dataset, quantity, share, 1.0, "real strides", 1.0 - LEAST_SHARE))
-        else:
-            checks.append(reported(dataset, quantity, share, "few strides, one or two people"))
-        note = "after one constant per joint"
-        rms = f"{row.joint}, {row.real}: RMS difference, deg"
-        checks.append(reported(dataset, rms, float(str(row.rms_deg)), note))
-    timing = timing_table(comparison)
-    for quantity in ("stride time, s", "duty factor"):
-        rows = timing[(timing["quantity"] == quantity) & timing["real"].str.endswith("2.5 m/s")]
-        low, high = float(rows["least"].min()), float(rows["largest"].max())
-        source = f"strides of two runners, {low:.3f} to {high:.3f}"
-        ours = float(rows["simulated"].iloc[0])
-        checks.append(
-            Check(
-                MARKERS, f"{quantity}, at 2.5 m/s", ours, (low + high) / 2, source, (high - low) / 2
-            )
-        )
-    for row in timing.itertuples(index=False):
-        note = f"median of the real strides {float(str(row.median)):.3f}"
-        dataset = FULL_BODY if "subject02" in str(row.real) else MARKERS
-        name = f"{row.quantity}, {row.real}"
-        checks.append(reported(dataset, name, float(str(row.simulated)), note))
-    return checks

@@ -26,13 +26,16 @@ FloatArray = NDArray[np.float64]
 
 MARKERS: Final = "running_markers_grf"
 FULL_BODY: Final = "running_full_body_ik"
+FULL_BODY_RUNNER: Final = "subject02"
 JOINTS: Final = ("hip", "knee", "ankle")
 #: Samples over a stride, both ends included.
 N_PHASES: Final = 101
 #: Hip flexion beyond this range is a jump of the authors' Euler angles, not a runner.
 _WIDEST_HIP_DEG: Final = 90.0
+_LEAST_FORCE: Final = 0.05
 _MARKER_RATE_HZ: Final = 150.0
 _FORCE_RATE_HZ: Final = 300.0
+_FULL_BODY_RATE_HZ: Final = 60.0
 
 
 @dataclass(frozen=True)
@@ -49,12 +52,21 @@ class RealCurves:
         Who ran each stride.
     angle_deg : dict of str to ndarray, shape (n_strides, N_PHASES)
         Flexion (dorsiflexion) of hip, knee and ankle.
+    duty_factor, stride_time_s : ndarray
+        Of those who ran; empty if the files do not say.
     """
 
     label: str
     speed_m_s: float
     runner: NDArray[np.str_]
     angle_deg: dict[str, FloatArray]
+    duty_factor: FloatArray
+    stride_time_s: FloatArray
+
+    @property
+    def dataset(self) -> str:
+        """Name of the data set."""
+        return FULL_BODY if FULL_BODY_RUNNER in self.runner else MARKERS
 
 
 @dataclass(frozen=True)
@@ -114,11 +126,15 @@ def stride_curves(folder: Path) -> RealCurves:
         2.5,
         np.array(runner),
         {joint: np.array(rows) for joint, rows in angles.items()},
+        duty_factor=np.array([]),
+        stride_time_s=np.array([]),
     )
 
 
 def mean_curves(folder: Path) -> list[RealCurves]:
     """Mean curves of two runners at 2.5, 3.5 and 4.5 m/s, right and left.
+
+    The duty factor is the share of the stride with more than 5 % of the largest vertical force.
 
     Parameters
     ----------
@@ -132,16 +148,20 @@ def mean_curves(folder: Path) -> list[RealCurves]:
     }
     for speed in (2.5, 3.5, 4.5):
         angles: dict[str, list[FloatArray]] = {joint: [] for joint in JOINTS}
-        runner = []
+        runner, duty = [], []
         for name, table in tables.items():
             for side in ("R", "L"):
                 runner.append(name)
+                force = np.nan_to_num(table[f"{side}grfY{round(10 * speed)}"].to_numpy(np.float64))
+                duty.append(np.mean(force[:-1] > _LEAST_FORCE * force.max()))
                 for joint in JOINTS:
                     column = table[f"{side}{joint}AngZ{round(10 * speed)}"]
                     angles[joint].append(column.to_numpy(dtype=np.float64))
         stacked = {joint: np.array(rows) for joint, rows in angles.items()}
         label = f"means of two runners at {speed:g} m/s"
-        found.append(RealCurves(label, speed, np.array(runner), stacked))
+        found.append(
+            RealCurves(label, speed, np.array(runner), stacked, np.array(duty), np.array([]))
+        )
     return found
 
 
@@ -251,10 +271,14 @@ def full_body(folder: Path, knee_peak_phase: float) -> tuple[RealCurves, RealTri
         )
     table = pd.read_csv(StringIO(text[1]), sep="\t")
     column = {name: table[name].to_numpy(dtype=np.float64) for name in table.columns}
-    time, knee = column["time"], -column["knee_angle_r"]
+    # Times are printed in whole milliseconds.
+    time, knee = np.arange(len(table)) / _FULL_BODY_RATE_HZ, -column["knee_angle_r"]
     peaks, _ = find_peaks(knee, height=90.0, distance=30)
-    period = np.diff(time[peaks])
-    begin = time[peaks[1:]] - knee_peak_phase * period
+    # A parabola through three samples: frames are 17 ms apart, strides differ by less.
+    before, top, after = knee[peaks - 1], knee[peaks], knee[peaks + 1]
+    turn = time[peaks] + (before - after) / (before - 2 * top + after) / 2.0 / _FULL_BODY_RATE_HZ
+    period = np.diff(turn)
+    begin = turn[1:] - knee_peak_phase * period
     begin, end = begin[:-1], begin[:-1] + period[1:]
     angles = {
         "hip": _by_phase(time, column["hip_flexion_r"], begin, end),
@@ -263,13 +287,13 @@ def full_body(folder: Path, knee_peak_phase: float) -> tuple[RealCurves, RealTri
     }
     pitch = column["pelvis_tilt"] + column["hip_flexion_r"] - knee + column["ankle_angle_r"]
     label = "one runner at 3.96 m/s"
-    runner = np.full(len(begin), "subject02")
+    runner = np.full(len(begin), FULL_BODY_RUNNER)
     trial = RealTrial(
-        "subject02",
+        FULL_BODY_RUNNER,
         3.96,
         period,
         np.full(len(period), np.nan),
         np.ptp(_by_phase(time, column["pelvis_ty"], begin, end), axis=1),
         level_in_stance(_by_phase(time, pitch, begin, end), 0.3),
     )
-    return RealCurves(label, 3.96, runner, angles), trial
+    return RealCurves(label, 3.96, runner, angles, np.array([]), period), trial
