@@ -169,7 +169,7 @@ def figure_walking(errors: pd.DataFrame) -> Figure:
                 panel.plot(at, limits, "_", color=colours[estimate], markersize=12)
         panel.set_xticks(range(len(names)), [n.replace(" ", "\n") for n in names])
         panel.set_title(side)
-        panel.set_ylim(bottom=0.0)
+    axes[0].set_ylim(bottom=0.0)
     axes[0].set_ylabel("RMSD after one constant (°)")
     fig.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return fig

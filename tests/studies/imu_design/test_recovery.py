@@ -9,6 +9,7 @@ from swaystride.studies.imu_design.experiments import EXPERIMENTS, effect_names
 from swaystride.studies.imu_design.plan import TABLES
 from swaystride.studies.imu_design.recovery import (
     EXPECTATIONS,
+    KNOWN_DEVIATIONS,
     RECOVERY_COLUMNS,
     recovery_table,
     slopes_by_seed,
@@ -64,6 +65,11 @@ def test_a_slope_of_the_wrong_sign_fails(cohorts):
     assert table.loc["table_a1/6g", "within"] == "no"
     assert table.loc["table_a1/baseline_100g", "within"] == "no"
     assert table.loc["table_a1/75g", "within"] == "yes"
+    assert table.loc["table_a1/16g", "within"] == "explained"
+
+
+def test_only_what_is_judged_can_be_a_known_deviation():
+    assert {tuple(quantity.split("/")) for quantity in KNOWN_DEVIATIONS} <= set(EXPECTATIONS)
 
 
 def test_only_the_printed_model_is_judged(cohorts):
