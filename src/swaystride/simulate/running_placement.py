@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swaystride.simulate.foot_pieces import foot_motion
+from swaystride.simulate.running_aims import aim_angles, aim_phase
 from swaystride.simulate.running_body import RunnerBody
 from swaystride.simulate.running_manner import NO_VARIABILITY, RunnerManner, steady_run
 from swaystride.simulate.running_pelvis import pelvis_height, pelvis_steps
-from swaystride.simulate.running_seeds import seed_angles, seed_phase
 from swaystride.simulate.running_stances import run_stances
 from swaystride.simulate.running_steps import LEAD_STRIDES, run_path, run_steps
 
@@ -105,13 +105,13 @@ def _at_speed(
     bobbing = pelvis_height(
         pelvis_steps(steps.contact_s, steps.toe_off_s, np.zeros(len(steps))), time
     )
-    phase = seed_phase(steps.contact_s[::2], steps.toe_off_s[::2], speed_m_s)(time)[0]
+    phase = aim_phase(steps.contact_s[::2], steps.toe_off_s[::2], speed_m_s)(time)[0]
     ranges = [
-        (steps.gait[f"{joint}_seed_range_rad"] * steps.manner[f"{joint}_range"])[step]
+        (steps.gait[f"{joint}_aim_range_rad"] * steps.manner[f"{joint}_range"])[step]
         for joint in ("hip", "knee")
     ]
     way = (ankle[0] - path.x(time)[0], ankle[1], ankle[2] - bobbing)
-    ahead, height = _closest(body, way, *seed_angles(ranges[0], ranges[1], phase, speed_m_s))
+    ahead, height = _closest(body, way, *aim_angles(ranges[0], ranges[1], phase, speed_m_s))
     return ahead + manner.foot_ahead_m, height - manner.crouch_m
 
 

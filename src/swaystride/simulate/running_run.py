@@ -19,7 +19,7 @@ from swaystride.simulate.running_phases import phase_tables
 from swaystride.simulate.running_placement import LONGEST_LEG, placement
 from swaystride.simulate.running_stances import run_stances
 from swaystride.simulate.running_steps import RunSteps, correlated, run_path, run_steps
-from swaystride.simulate.running_swing import swing_aims, with_seed_swings
+from swaystride.simulate.running_swing import swing_aims, with_aimed_swings
 
 Array = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def run_motion(
     stances = run_stances(steps, path, ahead, variability=variability, rng=rng)
     noise_m = variability.clearance_sd_m * correlated(rng, len(steps), variability.memory, (2,))
     feet = [
-        with_seed_swings(
+        with_aimed_swings(
             foot_motion(body.sole, stances[side]),
             body,
             path,

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from swaystride.simulate.foot_motion import FootMotion
 from swaystride.simulate.foot_spline import joined, least_jerk
+from swaystride.simulate.running_aims import aim_phase, aim_way
 from swaystride.simulate.running_body import RunnerBody
 from swaystride.simulate.running_pelvis import pelvis_height
-from swaystride.simulate.running_seeds import seed_phase, seed_way
 from swaystride.simulate.running_steps import RunPath, RunSteps
 
 Array = NDArray[np.float64]
@@ -65,13 +65,13 @@ def swing_aims(steps: RunSteps, side: int, noise_m: Array) -> SwingAims:
     own = slice(side, None, 2)
     return SwingAims(
         steps.speed_m_s[own],
-        (steps.gait["hip_seed_range_rad"] * steps.manner["hip_range"])[own],
-        (steps.gait["knee_seed_range_rad"] * steps.manner["knee_range"])[own],
+        (steps.gait["hip_aim_range_rad"] * steps.manner["hip_range"])[own],
+        (steps.gait["knee_aim_range_rad"] * steps.manner["knee_range"])[own],
         noise_m[own],
     )
 
 
-def with_seed_swings(
+def with_aimed_swings(
     motion: FootMotion, body: RunnerBody, path: RunPath, pelvis: Array, aims: SwingAims
 ) -> FootMotion:
     """Foot motion whose swings follow the mean curves of real runners.
@@ -104,8 +104,8 @@ def with_seed_swings(
     x, y, heading = (a.reshape(times.shape) for a in (x, y, heading))
     hips = pelvis_height(pelvis, times)
     touches = np.concatenate([[off[0] - 0.3], contact])
-    phase = seed_phase(touches, np.append(off, contact[-1] + 0.3), aims.speed_m_s)
-    forward, up = seed_way(
+    phase = aim_phase(touches, np.append(off, contact[-1] + 0.3), aims.speed_m_s)
+    forward, up = aim_way(
         body,
         aims.hip_range_rad[:-1, None],
         aims.knee_range_rad[:-1, None],
@@ -120,13 +120,13 @@ def with_seed_swings(
         return c * dx + s * dy, c * dy - s * dx, state[2, 0] - hips[:, knot]
 
     first, last = from_hips(begin, 0), from_hips(end, -1)
-    # What the seeds miss at both ends is made up for gradually.
+    # What the aims miss at both ends is made up for gradually.
     left = 1.0 - _smooth_step(shares / SETTLING_SHARE)
     near = _smooth_step(1.0 - (1.0 - shares) / SETTLING_SHARE)
 
-    def bent(seed: Array, axis: int) -> Array:
-        start, stop = first[axis] - seed[:, 0], last[axis] - seed[:, -1]
-        return seed + start[:, None] * left + stop[:, None] * near
+    def bent(aim: Array, axis: int) -> Array:
+        start, stop = first[axis] - aim[:, 0], last[axis] - aim[:, -1]
+        return aim + start[:, None] * left + stop[:, None] * near
 
     middle = np.sin(np.pi * shares)
     forward = bent(forward, 0) + aims.noise_m[:-1, :1] * middle

@@ -29,7 +29,7 @@ TOE_OFF_LAG: Final = 0.02
 
 
 @dataclass(frozen=True)
-class SeedCurves:
+class AimCurves:
     """Curves of real runners at some speeds, scaled to a range of 1.
 
     Parameters
@@ -65,9 +65,9 @@ class SeedCurves:
 
 
 @cache
-def seed_curves() -> SeedCurves:
-    """Curves of ``running_seeds.csv`` in this folder."""
-    table = pd.read_csv(Path(__file__).with_name("running_seeds.csv")).drop(columns="source")
+def aim_curves() -> AimCurves:
+    """Curves of ``running_aims.csv`` in this folder."""
+    table = pd.read_csv(Path(__file__).with_name("running_aims.csv")).drop(columns="source")
     mean, shape = {}, {}
     for joint in ("hip", "knee"):
         own = table[table["coordinate"] == f"{joint}_flexion"]
@@ -75,14 +75,12 @@ def seed_curves() -> SeedCurves:
         ranges = [np.ptp(fourier(row, np.linspace(0.0, 1.0, 2001))[0]) for row in rows]
         mean[joint] = own["a0"].to_numpy(dtype=np.float64) / ranges
         shape[joint] = rows / np.array(ranges)[:, None]
-    return SeedCurves(
+    return AimCurves(
         own["speed_m_s"].to_numpy(np.float64), own["duty_factor"].to_numpy(np.float64), mean, shape
     )
 
 
-def seed_phase(
-    contact_s: ArrayLike, toe_off_s: ArrayLike, speed_m_s: ArrayLike
-) -> PiecewiseQuintic:
+def aim_phase(contact_s: ArrayLike, toe_off_s: ArrayLike, speed_m_s: ArrayLike) -> PiecewiseQuintic:
     """Phase of the strides of one foot in the curves of its speed.
 
     Parameters
@@ -96,12 +94,12 @@ def seed_phase(
     -------
     PiecewiseQuintic
     """
-    seeds = seed_curves()
-    duty = seeds.weights(speed_m_s) @ seeds.duty_factor
+    aims = aim_curves()
+    duty = aims.weights(speed_m_s) @ aims.duty_factor
     return phase_pieces(contact_s, toe_off_s, usual_toe_off=duty + TOE_OFF_LAG, usual_duty=duty)
 
 
-def seed_angles(
+def aim_angles(
     hip_range_rad: ArrayLike, knee_range_rad: ArrayLike, phase: ArrayLike, speed_m_s: ArrayLike
 ) -> tuple[Array, Array]:
     """Flexion of thigh (against the vertical) and knee in the mean curves of real runners.
@@ -123,22 +121,22 @@ def seed_angles(
     --------
     The knee bends more in swing than in stance:
 
-    >>> _, knee = seed_angles(1.1, 1.7, [0.15, 0.68], 3.5)
+    >>> _, knee = aim_angles(1.1, 1.7, [0.15, 0.68], 3.5)
     >>> bool(knee[1] > 2 * knee[0])
     True
     """
-    seeds = seed_curves()
+    aims = aim_curves()
     phase = np.asarray(phase, dtype=np.float64)
-    weights = np.broadcast_to(seeds.weights(speed_m_s), (*phase.shape, len(seeds.speed_m_s)))
+    weights = np.broadcast_to(aims.weights(speed_m_s), (*phase.shape, len(aims.speed_m_s)))
     flexion = []
     for joint, size in (("hip", hip_range_rad), ("knee", knee_range_rad)):
-        rows = [fourier(row, phase.ravel())[0].reshape(phase.shape) for row in seeds.shape[joint]]
-        wave = np.sum(weights * (np.stack(rows, axis=-1) + seeds.mean[joint]), axis=-1)
+        rows = [fourier(row, phase.ravel())[0].reshape(phase.shape) for row in aims.shape[joint]]
+        wave = np.sum(weights * (np.stack(rows, axis=-1) + aims.mean[joint]), axis=-1)
         flexion.append(np.asarray(size) * wave)
     return flexion[0], flexion[1]
 
 
-def seed_way(
+def aim_way(
     body: RunnerBody,
     hip_range_rad: ArrayLike,
     knee_range_rad: ArrayLike,
@@ -162,7 +160,7 @@ def seed_way(
     -------
     forward_m, up_m : ndarray
     """
-    thigh, knee = seed_angles(hip_range_rad, knee_range_rad, phase, speed_m_s)
+    thigh, knee = aim_angles(hip_range_rad, knee_range_rad, phase, speed_m_s)
     shank = thigh - knee
     forward = body.thigh_m * np.sin(thigh) + body.shank_m * np.sin(shank)
     return forward, -body.thigh_m * np.cos(thigh) - body.shank_m * np.cos(shank)
