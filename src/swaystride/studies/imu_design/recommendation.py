@@ -57,10 +57,11 @@ def _by_error(sensors: Sensors, limit: str, fastest_m_s: float) -> str:
     """Ranges from which on all errors are within the limit, or why there are none."""
     if any(np.isnan(row["level_needed"]) for _, _, row in sensors):
         row = sensors[0][2]
+        n_beyond = row["n_beyond_at_baseline"]
         return (
             f"No range keeps all distance errors within {limit} up to {fastest_m_s:.1f} m/s: with "
-            f"the full range {row['n_beyond_at_baseline']} of {row['n_trials']} trials are beyond "
-            f"it, the largest error being {_signed(row['largest_error_at_baseline_pct'])} %."
+            f"the full range {n_beyond} of {row['n_trials']} trials {'is' if n_beyond == 1 else 'are'} "
+            f"beyond it, the largest error being {_signed(row['largest_error_at_baseline_pct'])} %."
         )
     needed = " and ".join(
         f"{_article(name)} of at least ±{row['level_needed']:g} {unit}"
