@@ -90,7 +90,7 @@ dry-run: setup
 	@snakemake --cores $(CORES) --dry-run all
 
 test: setup
-	@python -m pytest -n $(CORES) --dist loadgroup
+	@python -m pytest -n $(CORES) --dist loadscope --no-loadscope-reorder
 
 lint: setup
 	@ruff check .

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import pytest
 from hypothesis import settings
+from xdist.scheduler import LoadScopeScheduling
 
 # How long an example takes says nothing about its result: timing belongs in benchmarks.
 settings.register_profile("no_deadline", deadline=None)
@@ -14,12 +15,22 @@ settings.load_profile("no_deadline")
 _TESTS = Path(__file__).parent
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Keep the tests of a folder in one process, and begin with the longest ones.
+class FolderScheduling(LoadScopeScheduling):
+    """Keep the tests of a folder in one process.
 
     Folders share what is expensive to make (simulated recordings, built cohorts) by fixtures of the
     session, which every process would otherwise make for itself.
     """
-    for item in items:
-        item.add_marker(pytest.mark.xdist_group(str(item.path.parent)))
+
+    def _split_scope(self, nodeid: str) -> str:
+        return str(PurePosixPath(nodeid.split("::")[0]).parent)
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> FolderScheduling:
+    """Schedule by folders, whatever ``--dist`` says."""
+    return FolderScheduling(config, log)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the folder that takes longest."""
     items.sort(key=lambda item: not item.path.is_relative_to(_TESTS / "workflow"))
