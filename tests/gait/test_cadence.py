@@ -26,6 +26,13 @@ def test_one_stride_is_found_and_not_two(stride_s, stance_s, rate_hz):
     assert np.allclose(found_s[inside], stride_s, atol=0.03)
 
 
+@pytest.mark.parametrize("rate_hz", [59.8, 99.8, 100.6, 119.5, 148.15, 256.7, 1259.26])
+def test_any_measured_rate_will_do(rate_hz):
+    time = np.arange(round(20 * rate_hz)) / rate_hz
+    _, stride_s = local_stride_s(1.5 + np.cos(2 * np.pi * time / 0.7), rate_hz)
+    assert np.allclose(stride_s, 0.7, atol=0.02)
+
+
 def test_noise_has_no_rhythm_and_a_short_recording_no_window():
     noise = 1.0 + 0.2 * np.random.default_rng(3).random(3000)
     _, found_s = local_stride_s(noise, 100.0)

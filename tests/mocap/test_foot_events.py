@@ -78,3 +78,11 @@ def test_a_trial_without_running(foot):
     still = np.zeros_like(heel)
     with pytest.raises(RecordingError, match="no contact of the foot"):
         contacts(still, still)
+    with pytest.raises(RecordingError, match="1 slow spells, none of them whole"):
+        contacts(still, still, belt_speed_m_s=0.0)
+
+
+def test_a_marker_that_is_never_seen(foot):
+    heel, toe, _ = foot
+    with pytest.raises(RecordingError, match=r"toe, marker 1 of 1: marker missing throughout"):
+        contacts(heel, np.full_like(toe, np.nan))

@@ -118,6 +118,15 @@ def test_a_frame_without_a_marker_has_no_angles_downstream(static, motion, own_a
     assert not found.isel(time=101).isnull().any()
 
 
+def test_frames_with_a_marker_at_the_origin_do_not_count(static, motion, own_axes, printed):
+    """Some systems write a lost marker at the origin of the laboratory."""
+    lost = static.copy(deep=True)
+    lost["position"].loc[{"marker": "RKNE", "time": static["time"][:3]}] = 0.0
+    whole = angles(motion[0], static, CONVENTIONAL_GAIT, printed, own_axes)["joint_angle"]
+    found = angles(motion[0], lost, CONVENTIONAL_GAIT, printed, own_axes)["joint_angle"]
+    np.testing.assert_allclose(found, whole, atol=1e-9)
+
+
 def test_exchanged_labels_are_found(static, motion, clusters):
     recording = motion[0]
     names = [
@@ -166,6 +175,13 @@ def test_bad_input_is_told_in_one_line(static, motion, own_axes, printed, with_m
     swap = {"RKNE": "LKNE", "LKNE": "RKNE"}
     names = [swap.get(str(name), str(name)) for name in static["marker"].to_numpy()]
     assert "left and right are exchanged" in refused(static=static.assign_coords(marker=names))
+    for exchanged, told in (
+        (("RHEE", "RTOE"), "RHEE, RTOE: markers of heel and toe are exchanged"),
+        (("RHEE", "LHEE"), "RHEE, LHEE: markers of left and right are exchanged"),
+    ):
+        swap = dict(zip(exchanged, exchanged[::-1], strict=True))
+        names = [swap.get(str(name), str(name)) for name in static["marker"].to_numpy()]
+        assert told in refused(static=static.assign_coords(marker=names))
     pelvis = {"RASI": "LASI", "LASI": "RASI"}
     names = [pelvis.get(str(name), str(name)) for name in static["marker"].to_numpy()]
     assert "upside down" in refused(static=static.assign_coords(marker=names))

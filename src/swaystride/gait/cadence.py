@@ -61,11 +61,11 @@ def local_stride_s(movement: ArrayLike, rate_hz: float) -> tuple[Array, Array]:
     windows = np.lib.stride_tricks.sliding_window_view(slow, length)[::hop]
     centred = windows - windows.mean(axis=1, keepdims=True)
     power = np.abs(fft.rfft(centred, 2 * length, axis=1)) ** 2
-    correlation = fft.irfft(power, axis=1)[:, : length // 2 + 1]
+    first, last = round(SHORTEST_STRIDE_S * slow_hz), round(LONGEST_STRIDE_S * slow_hz)
+    correlation = fft.irfft(power, axis=1)[:, : last + 1]
     # pairs become fewer with the lag
     correlation *= length / (length - np.arange(correlation.shape[1]))
     correlation /= np.maximum(correlation[:, :1], 1e-12)
-    first, last = round(SHORTEST_STRIDE_S * slow_hz), round(LONGEST_STRIDE_S * slow_hz)
     inner = correlation[:, first:last]
     is_peak = (inner >= correlation[:, first - 1 : last - 1]) & (
         inner >= correlation[:, first + 1 : last + 1]

@@ -22,10 +22,12 @@ _SAME_PHASE_SHARE: Final = 0.08
 _STRIDES_JUDGED: Final = 3
 #: The mean squared rate over this window says how fast a candidate turns.
 _TURN_WINDOW_S: Final = 0.03
-#: A rhythm holds this long beyond the windows in which it was found: first and last strides.
+#: A rhythm holds this long from the middle of the window in which it was found, one second beyond
+#: its ends: first and last strides.
 _RHYTHM_HOLDS_S: Final = 3.0
 #: In stance the foot is in the lower part of its range. In the simulated sprints stances came out
-#: below .1 of the range (first and last strides up to .43), turns of the swing above .45.
+#: below .1 of the range and turns of the swing above .45; where the window is cut by the end of the
+#: recording or full of start or stop, a stance reaches .43, which its neighbours outvote.
 _HIGHEST_STANCE: Final = 0.4
 #: A stance may be up to this share of a stride off the middle between its neighbours.
 _UNEVEN_SHARE: Final = 0.3
@@ -110,8 +112,9 @@ def _stride_samples(candidates: Index, movement: Array, rate_hz: float) -> Array
 def _high_foot(
     candidates: Index, period: Array, acc_m_s2: ArrayLike, gyr: Array, rate_hz: float
 ) -> NDArray[np.bool_]:
-    """Candidates near an uneven interval at whose phase the foot is high."""
-    gap = np.diff(candidates, prepend=-1, append=-1)
+    """Candidates, up to three places from an uneven interval, at whose phase the foot is high."""
+    # Before the first and after the last there is no interval: both are judged.
+    gap = np.r_[np.inf, np.diff(candidates), np.inf]
     uneven = np.abs(gap[1:] - period) > _UNEVEN_SHARE * period
     uneven |= np.abs(gap[:-1] - period) > _UNEVEN_SHARE * period
     near = np.flatnonzero(maximum_filter1d(uneven, 2 * _STRIDES_JUDGED + 1, mode="nearest"))

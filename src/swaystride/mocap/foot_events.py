@@ -83,14 +83,16 @@ def foot_contacts(
     Returns
     -------
     DataFrame
-        ``initial_contact_s`` and ``toe_off_s`` of every contact that begins and ends inside the
-        recording, to a fraction of a frame.
+        ``initial_contact_s`` and ``toe_off_s``, from the first frame given, of every contact that
+        begins and ends inside the recording, to a fraction of a frame.
 
     Raises
     ------
     RecordingError
-        If there is no contact, as in a trial without running or with the wrong belt speed.
+        If a marker is missing throughout, or there is no contact, as in a trial without running or
+        with the wrong belt speed.
     """
+    _check_seen(heel_m, toe_m, file)
     missing = ~np.isfinite(np.concatenate([heel_m, toe_m])).all(axis=(0, 2))
     heel, toe = (_velocity(m, rate_hz, belt_speed_m_s, rule) for m in (heel_m, toe_m))
     slow, rising_m_s = (share * running_speed_m_s for share in (rule.speed_share, rule.rise_share))
@@ -99,7 +101,8 @@ def foot_contacts(
     shortest = max(1, round(rule.shortest_s * rate_hz))
     beside = round(rate_hz / rule.cutoff_hz / 2.0)
     rows = []
-    for first, after in zip(*_runs(speed < 0.0, shortest), strict=True):
+    begins, ends = _runs(speed < 0.0, shortest)
+    for first, after in zip(begins, ends, strict=True):
         rising = np.flatnonzero(rise[first:] > 0.0)
         if first == 0 or after == len(speed) or rising.size == 0 or rising[0] == 0:
             continue
@@ -118,11 +121,27 @@ def foot_contacts(
         raise RecordingError(
             "no contact of the foot",
             file=file or None,
-            expected=f"heel and toe slower than {slow:g} m/s over ground that moves "
-            f"backwards at {belt_speed_m_s:g} m/s",
-            found=f"at least {float(speed.min()) + slow:.2f} m/s",
+            expected=f"a marker slower than {slow:g} m/s over ground that moves backwards at "
+            f"{belt_speed_m_s:g} m/s, until the toe rises, inside the recording",
+            found=f"{len(begins)} slow spells, none of them whole"
+            if len(begins)
+            else f"at least {float(speed.min()) + slow:.2f} m/s",
         )
     return pd.DataFrame(rows)
+
+
+def _check_seen(heel_m: Array, toe_m: Array, file: str) -> None:
+    """A marker that is never seen gives no velocity."""
+    for place, markers in (("heel", heel_m), ("toe", toe_m)):
+        seen = np.isfinite(markers).all(axis=2).any(axis=1)
+        if not seen.all():
+            raise RecordingError(
+                "marker missing throughout",
+                file=file or None,
+                place=f"{place}, marker {int(np.flatnonzero(~seen)[0]) + 1} of {len(seen)}",
+                expected="frames in which it is seen",
+                found="none",
+            )
 
 
 def belt_speed(toe_m: Array, rate_hz: float) -> float:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-
 from swaystride.findings import findings_from_json, findings_to_json
 from swaystride.marker_recording import MarkerRecording
 from swaystride.mocap.marker_filter import Realisation, filter_markers
@@ -67,8 +65,6 @@ def clean_markers(
     """
     chosen = names or markers.motion_markers()
     seen = points(recording, chosen)
-    # some systems write a lost marker at the origin of the laboratory
-    seen[(seen == 0.0).all(axis=2)] = np.nan
     rate_hz = float(recording.attrs["rate_hz"])
     filled, gaps = fill_gaps(
         seen,

@@ -143,14 +143,16 @@ def points(recording: MarkerRecording, names: tuple[str, ...]) -> Array:
     Returns
     -------
     ndarray, shape (n_markers, n_frames, 3)
-        m; NaN where a marker was not seen.
+        m; NaN where a marker was not seen. Exactly at the origin of the laboratory counts as not
+        seen, because some systems write a lost marker there.
 
     Raises
     ------
     RecordingError
         If a marker is not in the recording, or in no frame of it.
     """
-    position = marker_positions(recording, names).transpose(0, 2, 1)
+    position = marker_positions(recording, names).transpose(0, 2, 1).copy()
+    position[(position == 0.0).all(axis=2)] = np.nan
     missing = [name for name, marker in zip(names, position, strict=True) if not _ever_seen(marker)]
     if missing:
         raise RecordingError(

@@ -193,7 +193,18 @@ def _check_sides(
             expected="z up; spines not exchanged",
             found=f"its y axis {np.degrees(np.arccos(np.median(r[:, 2, 1]))):.0f}° from vertical",
         )
-    for kind in ("knee", "ankle"):
+    for side in SIDES:
+        heel, toe = markers.leg(side).heel, markers.leg(side).toe
+        ahead = np.median(np.sum((at[toe] - at[heel]) * r[:, :, 0], axis=1))
+        if ahead < 0:
+            raise RecordingError(
+                "markers of heel and toe are exchanged",
+                file=file,
+                place=f"{heel}, {toe}",
+                expected="the toe ahead of the heel",
+                found=f"{ahead:.3f} m",
+            )
+    for kind in ("knee", "ankle", "heel", "toe"):
         right, left = (getattr(markers.leg(side), kind) for side in SIDES)
         apart = np.median(np.sum((at[right] - at[left]) * r[:, :, 2], axis=1))
         if apart < 0:
