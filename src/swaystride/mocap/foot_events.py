@@ -133,7 +133,7 @@ def foot_contacts(
 def _check_seen(heel_m: Array, toe_m: Array, file: str) -> None:
     """A marker that is never seen gives no velocity."""
     for place, markers in (("heel", heel_m), ("toe", toe_m)):
-        seen = np.isfinite(markers).all(axis=2).any(axis=1)
+        seen = np.any(np.isfinite(markers).all(axis=2), axis=1)
         if not seen.all():
             raise RecordingError(
                 "marker missing throughout",
