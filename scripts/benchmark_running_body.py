@@ -22,7 +22,7 @@ from swaystride.io.c3d_writer import write_c3d
 from swaystride.io.opal_hdf5_writer import OpalRun, OpalWriter
 from swaystride.marker_recording import make_marker_recording
 from swaystride.simulate.running_body import runner_body, usual_shares, usual_shoe
-from swaystride.simulate.running_manner import RunnerManner, RunVariability, steady_run
+from swaystride.simulate.running_manner import USUAL_VARIABILITY, RunnerManner, steady_run
 from swaystride.simulate.running_markers import USUAL_CAMERAS, filmed, wear_markers
 from swaystride.simulate.running_motion import RunningMotion
 from swaystride.simulate.running_recording import recorded
@@ -46,22 +46,6 @@ LOWER_BODY = (
     "foot_right",
     "foot_left",
 )
-SCATTER = RunVariability(
-    time_cv=0.012,
-    duty_cv=0.015,
-    impact_cv=0.08,
-    arrest_cv=0.08,
-    quiet_rate_cv=0.2,
-    range_cv=0.03,
-    placement_sd_m=0.01,
-    width_sd_m=0.02,
-    clearance_sd_m=0.006,
-    pitch_sd_rad=0.02,
-    roll_sd_rad=0.015,
-    heading_sd_rad=0.015,
-    joint_sd_rad=0.02,
-    memory=0.3,
-)
 
 
 def simulated(
@@ -79,7 +63,7 @@ def simulated(
         RunnerManner(),
         steady_run(duration_s, speed_m_s),
         duration_s=duration_s,
-        variability=SCATTER,
+        variability=USUAL_VARIABILITY,
         rng=rng,
         treadmill=treadmill,
     )

@@ -12,6 +12,7 @@ from swaystride.simulate.imu_design_parameters import ImuDesignCohort
 from swaystride.simulate.running_body import RunnerBody, runner_body, usual_shares, usual_shoe
 from swaystride.simulate.running_manner import (
     NO_VARIABILITY,
+    USUAL_VARIABILITY,
     RunnerManner,
     RunVariability,
     steady_run,
@@ -37,22 +38,7 @@ def runners() -> ImuDesignCohort:
 @pytest.fixture(scope="session")
 def run_variability() -> RunVariability:
     """Scatter of a usual runner from stride to stride (spec §9.1, step 9)."""
-    return RunVariability(
-        time_cv=0.012,
-        duty_cv=0.015,
-        impact_cv=0.08,
-        arrest_cv=0.08,
-        quiet_rate_cv=0.2,
-        range_cv=0.03,
-        placement_sd_m=0.01,
-        width_sd_m=0.02,
-        clearance_sd_m=0.006,
-        pitch_sd_rad=0.02,
-        roll_sd_rad=0.015,
-        heading_sd_rad=0.015,
-        joint_sd_rad=0.02,
-        memory=0.3,
-    )
+    return USUAL_VARIABILITY
 
 
 @pytest.fixture(scope="session")

@@ -203,6 +203,24 @@ class RunVariability:
 #: A runner whose strides are all alike.
 NO_VARIABILITY = RunVariability(**{f.name: 0.0 for f in fields(RunVariability)})
 
+#: Scatter of a usual runner from stride to stride (spec §9.1, step 9).
+USUAL_VARIABILITY = RunVariability(
+    time_cv=0.012,
+    duty_cv=0.015,
+    impact_cv=0.08,
+    arrest_cv=0.08,
+    quiet_rate_cv=0.2,
+    range_cv=0.03,
+    placement_sd_m=0.01,
+    width_sd_m=0.02,
+    clearance_sd_m=0.006,
+    pitch_sd_rad=0.02,
+    roll_sd_rad=0.015,
+    heading_sd_rad=0.015,
+    joint_sd_rad=0.02,
+    memory=0.3,
+)
+
 
 @cache
 def manner_anchors() -> GaitAnchors:

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Final
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from swaystride.simulate._running_points import marker_positions
-from swaystride.simulate.running_body import SEGMENTS, RunnerBody
+from swaystride.simulate.running_body import RunnerBody
 from swaystride.simulate.running_motion import RunningMotion
 from swaystride.simulate.running_recording import n_samples
-from swaystride.simulate.running_sensors import SensorPlace, WornSensors, place_point_m
+from swaystride.simulate.running_sensors import (
+    SensorPlace,
+    WornSensors,
+    place_point_m,
+    read_places,
+)
 from swaystride.simulate.running_tissue import SkinPoints, TissueSize, skin_points
 
 Array = NDArray[np.float64]
@@ -36,19 +39,7 @@ FACE_MARKERS: Final = {
 @cache
 def marker_places() -> dict[str, SensorPlace]:
     """Places of the 38 markers of the body, from ``running_markers.csv`` in this folder."""
-    table = pd.read_csv(Path(__file__).with_name("running_markers.csv"), index_col="marker")
-    return {
-        str(name): SensorPlace(
-            name=str(name),
-            segment=SEGMENTS.index(row["segment"]),
-            ahead_m=float(row["ahead_m"]),
-            up_m=float(row["up_m"]),
-            up_share=float(row["up_share"]),
-            outward_m=float(row["outward_m"]),
-            high_range=False,
-        )
-        for name, row in table.iterrows()
-    }
+    return read_places("running_markers.csv")
 
 
 @dataclass(frozen=True)

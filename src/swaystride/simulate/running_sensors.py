@@ -66,7 +66,19 @@ class SensorPlace:
 @cache
 def sensor_places() -> dict[str, SensorPlace]:
     """The 13 places of the source, from ``running_sensors.csv`` in this folder."""
-    table = pd.read_csv(Path(__file__).with_name("running_sensors.csv"), index_col="sensor")
+    return read_places("running_sensors.csv")
+
+
+def read_places(file: str) -> dict[str, SensorPlace]:
+    """Places on the body from a table in this folder.
+
+    Parameters
+    ----------
+    file : str
+        Name of the table: the name of the place in the first column, then the fields of
+        :class:`SensorPlace`; without a column ``high_range`` there is no such range.
+    """
+    table = pd.read_csv(Path(__file__).with_name(file), index_col=0)
     return {
         str(name): SensorPlace(
             name=str(name),
@@ -75,7 +87,7 @@ def sensor_places() -> dict[str, SensorPlace]:
             up_m=float(row["up_m"]),
             up_share=float(row["up_share"]),
             outward_m=float(row["outward_m"]),
-            high_range=bool(row["high_range"]),
+            high_range=bool(row.get("high_range", False)),
         )
         for name, row in table.iterrows()
     }
