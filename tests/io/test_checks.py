@@ -40,6 +40,14 @@ def test_a_median_ignores_missing_samples_and_needs_twenty() -> None:
     assert checks.acceleration_unit(acc, file="") == []
 
 
+def test_a_runner_in_flight_most_of_the_time_is_no_wrong_unit() -> None:
+    """Free fall for more than half of the samples, 2.4 times gravity in the others."""
+    acc = np.zeros((3, 100))
+    acc[2, :42] = GRAVITY_M_S2 / 0.42
+    assert checks.acceleration_unit(acc, file="") == []
+    assert len(checks.acceleration_unit(acc / GRAVITY_M_S2, file="")) == 1
+
+
 def test_the_size_of_the_angular_rate() -> None:
     gyr = np.outer([0.0, 1.0, 0.0], np.full(40, 34.0))
     assert checks.angular_rate_unit(gyr, file="") == []

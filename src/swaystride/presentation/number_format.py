@@ -33,13 +33,18 @@ def is_missing(value: Any) -> bool:
     --------
     >>> is_missing(None), is_missing(float("nan")), is_missing(0.0), is_missing("")
     (True, True, False, False)
+    >>> import numpy as np
+    >>> is_missing(np.float64(1.0)), is_missing(np.float64("nan"))
+    (False, True)
     """
     if value is None:
         return True
     if isinstance(value, str):
         return False
-    unequal = value != value  # True for NaN and NaT, pandas.NA for pandas.NA
-    return unequal is not False and (not isinstance(unequal, bool) or unequal)
+    try:
+        return bool(value != value)  # True for NaN and NaT
+    except TypeError:  # pandas.NA is neither equal nor unequal
+        return True
 
 
 def format_number(value: Any, decimals: int, style: Style = "page") -> str:
