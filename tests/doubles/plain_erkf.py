@@ -138,7 +138,10 @@ def plain_filter(model, constraints, start, p):
                 states[j], f[o, o] = step(
                     states[j], before[j], signals[j], model.step_s, model.midpoint, d
                 )
-            p = f @ p @ f.T + q
+            rough = np.zeros((m, d))
+            rough[:, 3:6] = model.roughness[k, :, :1]
+            rough[:, 6:9] = model.roughness[k, :, 1:]
+            p = f @ p @ f.T + q + np.diag(rough.ravel())
         history["p0"].append(p)
         history["f"].append(f)
         if model.active[k].any():

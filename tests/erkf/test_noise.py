@@ -1,7 +1,9 @@
 """Noise sets: printed numbers, and the same random walk at any rate."""
 
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from swaystride.erkf.noise import NOISE_SETS, RUNNING_PRINTED, RUNNING_SWAPPED, WALKING
@@ -38,3 +40,44 @@ def test_swapped_exchanges_hip_and_knee_only():
 def test_white_errors_are_not_inflated():
     assert PRINTED_OPTIONS.joint_inflation(200.0) == 1.0
     assert RECOMMENDED_OPTIONS.joint_inflation(1000.0) == RECOMMENDED_OPTIONS.joint_inflation(50.0)
+
+
+def test_changing_signals_add_the_square_of_what_a_step_may_miss():
+    noise = replace(WALKING, acc_step_share=0.05, gyr_step_share=0.02)
+    signals = np.random.default_rng(1).normal(size=(50, 7, 6))
+    found = noise.integration_noise(signals, 200.0)
+    assert found.shape == (50, 7, 2)
+    assert not found[0].any()
+    for k, j in ((1, 0), (20, 3), (49, 6)):
+        acc = np.linalg.norm(signals[k, j, :3] - signals[k - 1, j, :3])
+        gyr = np.linalg.norm(signals[k, j, 3:] - signals[k - 1, j, 3:])
+        assert found[k, j, 0] == pytest.approx((0.05 * acc / 200.0) ** 2)
+        assert found[k, j, 1] == pytest.approx((0.02 * gyr / 200.0) ** 2)
+
+
+def test_steady_signals_and_nil_shares_add_nothing():
+    signals = np.random.default_rng(2).normal(size=(30, 7, 6))
+    assert not WALKING.integration_noise(signals, 100.0).any()
+    noise = replace(WALKING, acc_step_share=0.05, gyr_step_share=0.02)
+    assert not noise.integration_noise(np.repeat(signals[:1], 30, axis=0), 100.0).any()
+    only_acc = replace(noise, gyr_step_share=0.0).integration_noise(signals, 100.0)
+    assert not only_acc[:, :, 1].any()
+    assert (only_acc[1:, :, 0] > 0.0).all()
+
+
+def test_at_twice_the_rate_the_same_movement_adds_an_eighth_per_second():
+    """Steps are half as long, changes half as large, and there are twice as many."""
+    noise = replace(WALKING, acc_step_share=0.05)
+    added = []
+    for rate_hz in (100.0, 200.0):
+        time = np.arange(round(rate_hz) + 1) / rate_hz
+        signals = np.zeros((len(time), 1, 6))
+        signals[:, 0, 0] = 5.0 * np.sin(2 * np.pi * time)
+        added.append(noise.integration_noise(signals, rate_hz)[:, 0, 0].sum())
+    assert added[1] / added[0] == pytest.approx(1 / 8, rel=0.01)
+
+
+def test_a_refused_constraint_is_believed_after_whole_samples():
+    assert RECOMMENDED_OPTIONS.patience(200.0) == 300
+    assert replace(RECOMMENDED_OPTIONS, longest_refusal_s=0.013).patience(100.0) == 1
+    assert PRINTED_OPTIONS.patience(200.0) == np.iinfo(np.int64).max

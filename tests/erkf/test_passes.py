@@ -10,21 +10,23 @@ from swaystride.erkf.constraints import constraints_of
 from swaystride.erkf.noise import WALKING
 from swaystride.erkf.options import PRINTED_OPTIONS, RECOMMENDED_OPTIONS
 from swaystride.erkf.passes import kernel_model, run_passes
-from swaystride.erkf.start import START_AT_REST
+from swaystride.erkf.start import START_AT_REST, StartUncertainty
 
 UNGATED = replace(RECOMMENDED_OPTIONS, gate=np.inf)
+#: Integration that misses a part of every change.
+ROUGH = replace(WALKING, acc_step_share=0.05, gyr_step_share=0.02)
 
 
-def prepared(walk, options, n_samples, repeats=1, every=1):
+def prepared(walk, options, n_samples, repeats=1, every=1, noise=WALKING):
     signals = np.concatenate([walk.acc, walk.gyr], axis=1).transpose(2, 0, 1)[:n_samples:every]
     signals = np.ascontiguousarray(np.tile(signals, (repeats, 1, 1)))
     stance = np.tile(walk.stance[:, :n_samples:every], repeats)
     rate_hz = 100.0 / every
     still = np.zeros((7, len(signals)), bool)
     still[5:7] = stance & (options is not PRINTED_OPTIONS)
-    constraints, active = constraints_of(walk.body, WALKING, options, rate_hz, stance, still)
+    constraints, active = constraints_of(walk.body, noise, options, rate_hz, stance, still)
     return (
-        kernel_model(signals, rate_hz, walk.body, WALKING, options, constraints, active),
+        kernel_model(signals, rate_hz, walk.body, noise, options, constraints, active),
         constraints,
     )
 
@@ -38,11 +40,14 @@ def largest_difference(states, plain, d):
 
 
 @pytest.mark.parametrize(
-    ("options", "n_samples"), [(PRINTED_OPTIONS, 500), (UNGATED, 3000)], ids=["nine", "twelve"]
+    ("options", "n_samples", "noise"),
+    [(PRINTED_OPTIONS, 500, WALKING), (UNGATED, 3000, WALKING), (UNGATED, 200, ROUGH)],
+    ids=["nine", "twelve", "rough"],
 )
-def test_filter_equals_its_plain_twin_for_up_to_thirty_seconds(walk, options, n_samples):
+def test_filter_equals_its_plain_twin_for_up_to_thirty_seconds(walk, options, n_samples, noise):
     # half the rate: half the time of the twin
-    model, constraints = prepared(walk, options, n_samples, every=2)
+    model, constraints = prepared(walk, options, n_samples, every=2, noise=noise)
+    assert model.roughness.any() == (noise is ROUGH)
     start = walk.start(START_AT_REST, 0.03)
     found = run_passes(model, start, options, "filter")
     p0 = start.covariance(with_bias=options.gyro_bias)
@@ -51,9 +56,13 @@ def test_filter_equals_its_plain_twin_for_up_to_thirty_seconds(walk, options, n_
     np.testing.assert_allclose(found.covariance, twin["p"][-1], atol=1e-9)
 
 
-@pytest.mark.parametrize("options", [PRINTED_OPTIONS, UNGATED], ids=["nine", "twelve"])
-def test_smoother_equals_rauch_tung_striebel(walk, options):
-    model, constraints = prepared(walk, options, 100)
+@pytest.mark.parametrize(
+    ("options", "noise"),
+    [(PRINTED_OPTIONS, WALKING), (UNGATED, WALKING), (UNGATED, ROUGH)],
+    ids=["nine", "twelve", "rough"],
+)
+def test_smoother_equals_rauch_tung_striebel(walk, options, noise):
+    model, constraints = prepared(walk, options, 100, noise=noise)
     start, d = walk.start(START_AT_REST, 0.03), len(model.noise)
     found = run_passes(model, start, options, "smoother")
     twin = plain_filter(
@@ -116,3 +125,55 @@ def test_covariance_is_symmetric_and_positive_over_six_minutes(walk, options):
     np.testing.assert_array_equal(p, p.T)
     scale = 1.0 / np.sqrt(np.diag(p))
     assert np.linalg.eigvalsh(p * scale * scale[:, None]).min() > 0.0
+
+
+#: Six seconds that begin at 5 m/s beside the truth: far beyond a gate of five standard deviations.
+PATIENT = replace(RECOMMENDED_OPTIONS, gate=25.0, longest_refusal_s=1.5)
+STUBBORN = replace(PATIENT, longest_refusal_s=np.inf)
+SURE = StartUncertainty(0.005, 0.1, 0.003, 0.003, 1e-4)
+
+
+def started_wrongly(walk, options, method, **changes):
+    options = replace(options, **changes)
+    model, constraints = prepared(walk, options, 600, noise=replace(ROUGH, tilt_sd=10.0))
+    start = walk.start(SURE)
+    start = replace(start, velocity_m_s=start.velocity_m_s + np.array([5.0, 0.0, 0.0]))
+    return run_passes(model, start, options, method), model, constraints
+
+
+def test_what_is_refused_for_long_is_believed_once(walk):
+    """All feet say that the filter is wrong; without end of patience it stays so."""
+    late = slice(400, 600)
+    errors, refused = {}, {}
+    for options in (PATIENT, STUBBORN):
+        found, model, _ = started_wrongly(walk, options, "filter")
+        gap = found.states[late, 0, 3:6] - walk.velocity[late, 0]
+        errors[options], refused[options] = np.sqrt(np.mean(gap**2)), found.refused[:2]
+    assert errors[PATIENT] < 0.05
+    assert errors[STUBBORN] > 2.5
+    # refused until patience ends, then hardly ever; or at every stance
+    assert (refused[PATIENT] < 200).all()
+    np.testing.assert_array_equal(refused[STUBBORN], model.active[:, :2].sum(axis=0))
+
+
+def test_patience_ends_at_its_sample(walk):
+    """The foot is believed at the first stance sample after 1.5 s, and not before."""
+    found, model, _ = started_wrongly(walk, PATIENT, "filter")
+    standing = np.flatnonzero(model.active[:, 0] | model.active[:, 1])
+    first = standing[standing >= PATIENT.patience(100.0)][0]
+    speed = np.linalg.norm(found.states[:, 0, 3:6] - walk.velocity[:600, 0], axis=1)
+    assert speed[:first].min() > 4.0
+    assert speed[first] < 2.0
+
+
+@pytest.mark.parametrize("options", [PATIENT, STUBBORN], ids=["patient", "stubborn"])
+def test_waiting_goes_on_across_checkpoints(walk, options):
+    filtered = started_wrongly(walk, options, "filter")[0]
+    results = [
+        started_wrongly(walk, options, "smoother", checkpoint_spacing=spacing)[0]
+        for spacing in (7, 5000)
+    ]
+    for one in results:
+        np.testing.assert_array_equal(one.refused, filtered.refused)
+        np.testing.assert_allclose(one.states, results[0].states, atol=1e-8)
+        np.testing.assert_allclose(one.states[-1], filtered.states[-1], atol=1e-9)

@@ -24,7 +24,7 @@ def test_a_person_gets_the_own_centres_back(static, with_medial, recipe):
             static,
             with_medial,
             optical_person.BODY,
-            options=OpticalOptions(centres, "axes", True),
+            options=OpticalOptions(centres, "axes", True, "malleoli"),
             axes=axes,
         )
         for centres in ("average_axes", "medial_markers")

@@ -36,7 +36,7 @@ def moved(recording, r, shift_m):
 @pytest.mark.parametrize("frames", ["axes", "least_squares"])
 def test_rigid_trios_give_the_true_angles_and_centres(static, motion, own_axes, frames):
     recording, truth = motion
-    options = OpticalOptions("average_axes", frames, True)
+    options = OpticalOptions("average_axes", frames, True, "malleoli")
     found = angles(recording, static, CONVENTIONAL_GAIT, options, own_axes)
     np.testing.assert_allclose(
         found["joint_angle"].transpose("time", "joint", "angle"), truth, atol=1e-9
@@ -48,7 +48,7 @@ def test_rigid_trios_give_the_true_angles_and_centres(static, motion, own_axes, 
 
 def test_rigid_clusters_give_the_true_angles(static, motion, clusters):
     recording, truth = motion
-    options = OpticalOptions("medial_markers", "least_squares", True)
+    options = OpticalOptions("medial_markers", "least_squares", True, "malleoli")
     found = angles(recording, static, clusters, options, None)
     np.testing.assert_allclose(
         found["joint_angle"].transpose("time", "joint", "angle"), truth, atol=1e-9
@@ -94,7 +94,7 @@ def test_left_and_right_are_mirror_images(static, motion, own_axes, printed, rng
 @pytest.mark.parametrize("frames", ["axes", "least_squares"])
 def test_the_room_does_not_matter(static, motion, own_axes, rng, frames):
     """Motion may be turned in any way; the static trial about the vertical, which it needs."""
-    options = OpticalOptions("average_axes", frames, True)
+    options = OpticalOptions("average_axes", frames, True, "malleoli")
     recording, standing = noisy(motion[0], rng), noisy(static, rng, 0.003)
     before = angles(recording, standing, CONVENTIONAL_GAIT, options, own_axes)["joint_angle"]
     after = angles(
@@ -133,7 +133,7 @@ def test_exchanged_labels_are_found(static, motion, clusters):
         {"RTOE": "RMT5", "RMT5": "RTOE"}.get(str(name), str(name))
         for name in recording["marker"].to_numpy()
     ]
-    options = OpticalOptions("medial_markers", "least_squares", True)
+    options = OpticalOptions("medial_markers", "least_squares", True, "malleoli")
     clean = angles(recording, static, clusters, options, None)
     wrong = angles(recording.assign_coords(marker=names), static, clusters, options, None)
     assert findings_from_json(clean.attrs["findings"]) == []
@@ -186,7 +186,7 @@ def test_bad_input_is_told_in_one_line(static, motion, own_axes, printed, with_m
     names = [pelvis.get(str(name), str(name)) for name in static["marker"].to_numpy()]
     assert "upside down" in refused(static=static.assign_coords(marker=names))
     assert "average joint axes missing" in refused(axes=None)
-    medial = OpticalOptions("medial_markers", "axes", True)
+    medial = OpticalOptions("medial_markers", "axes", True, "malleoli")
     assert "no medial landmarks" in refused(options=medial)
 
 

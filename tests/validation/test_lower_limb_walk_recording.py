@@ -70,7 +70,8 @@ def test_frames_lag_and_angles(folder, moving):
 def test_mounting_is_found_whatever_the_heading(moving):
     heading = Rotation.from_euler("z", 73.0, degrees=True).as_matrix()
     anatomical = moving.rotation[:, 3] @ moving.body.r_anatomical_from_sensor[3].T
-    found = optical_mounting(anatomical, heading @ moving.rotation[:, 3])
+    turned, found = optical_mounting(anatomical, heading @ moving.rotation[:, 3])
+    assert np.degrees(turned) == pytest.approx(-73.0, abs=1e-9)
     np.testing.assert_allclose(found, moving.body.r_anatomical_from_sensor[3], atol=1e-9)
 
 

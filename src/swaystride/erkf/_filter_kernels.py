@@ -28,6 +28,7 @@ class KernelModel(NamedTuple):
     step_s: float
     midpoint: bool
     noise: Array  # (d,)
+    roughness: Array  # (n, m, 2)
     kind: Index  # (c,)
     first: Index  # (c,)
     second: Index  # (c,)
@@ -35,6 +36,7 @@ class KernelModel(NamedTuple):
     sd: Array  # (c, 3)
     active: NDArray[np.bool_]  # (n, c)
     gate: float
+    patience: int  # samples
     joints: Index  # (j, 2)
     anatomical: Array  # (m, 3, 3)
 
@@ -88,7 +90,13 @@ def empty_record(slots: int, m: int, d: int, c: int) -> StepRecord:
 
 @njit(cache=True)  # type: ignore[untyped-decorator, unused-ignore]
 def advance(
-    model: KernelModel, k: int, state: Array, p: Array, record: StepRecord, slot: int
+    model: KernelModel,
+    k: int,
+    state: Array,
+    p: Array,
+    waiting: Index,
+    record: StepRecord,
+    slot: int,
 ) -> None:
     """From the sample before to sample `k`, in place; sample 0 has no prediction.
 
@@ -99,6 +107,9 @@ def advance(
         Sample.
     state, p : array, shape (m, 13) and (m · d, w)
         Nominal states and covariance.
+    waiting : array of int, shape (c,)
+        Samples since each constraint was believed last; one that has waited longer than
+        ``model.patience`` passes whatever the gate says.
     record : StepRecord
         All but `state` and `covariance` is written.
     slot : int
@@ -117,6 +128,10 @@ def advance(
                 transition[j],
             )
         predict_covariance(p, transition, model.step_s, model.noise)
+        for j in range(m):
+            for a in range(3):
+                p[d * j + 3 + a, d * j + 3 + a] += model.roughness[k, j, 0]
+                p[d * j + 6 + a, d * j + 6 + a] += model.roughness[k, j, 1]
     change = record.change[slot]
     change[:] = 0.0
     rotation = np.empty((m, 3, 3))
@@ -126,6 +141,7 @@ def advance(
     any_used = False
     for c in range(model.kind.shape[0]):
         record.used[slot, c] = False
+        waiting[c] += 1
         if not model.active[k, c]:
             continue
         variance = linearise(
@@ -149,12 +165,14 @@ def advance(
             residual,
             record.jacobian[slot, c],
             variance,
-            model.gate,
+            model.gate if waiting[c] <= model.patience else np.inf,
             record.gain[slot, c],
             record.weighted[slot, c],
             record.inverse[slot, c],
         )
-        any_used |= record.used[slot, c]
+        if record.used[slot, c]:
+            waiting[c] = 0
+            any_used = True
     if any_used:
         inject(state, change, d)
         reset(p, change, d, False)
@@ -180,6 +198,7 @@ def filter_piece(
     end: int,
     state: Array,
     p: Array,
+    waiting: Index,
     record: StepRecord,
     states: Array,
     angles: Array,
@@ -195,6 +214,8 @@ def filter_piece(
         Samples.
     state, p : array, shape (m, 13) and (m · d, w)
         At the sample before `begin`; overwritten by those at the last sample.
+    waiting : array of int, shape (c,)
+        As in :func:`advance`, in place.
     record : StepRecord
         With one slot, which is overwritten, or with a slot per sample, which are filled.
     states : array, shape (n, m, 13)
@@ -208,7 +229,7 @@ def filter_piece(
     jacobian = np.empty((3, 6))
     for k in range(begin, end):
         slot = k - begin if keep else 0
-        advance(model, k, state, p, record, slot)
+        advance(model, k, state, p, waiting, record, slot)
         if keep:
             copy_rows(state, record.state[slot])
             copy_rows(p, record.covariance[slot])

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import skew
 
+from swaystride.erkf.body import SEGMENTS
 from swaystride.errors import RecordingError
 from swaystride.signals.filters import butterworth_lowpass
 
@@ -114,7 +115,7 @@ def main_axis(gyr_rad_s: Array, vertical: Array, keep: NDArray[np.bool_]) -> Mai
     values, vectors = np.linalg.eigh(flat @ flat.T)
     whole = np.linalg.eigh(scatter)[1][:, -1]
     # of the two horizontal directions the smaller one is noise (methods §4.2)
-    variance = values[1] / keep.sum()
+    variance = max(values[1], 0.0) / keep.sum()
     return MainAxis(
         axis=vectors[:, -1],
         share=float(values[-1] / np.trace(scatter)),
@@ -198,3 +199,67 @@ def anatomical_frame(vertical: Array, right: Array) -> Array:
     z = right - (right @ vertical) * vertical
     z /= np.linalg.norm(z)
     return np.stack([np.cross(vertical, z), vertical, z]) + 0.0
+
+
+def level_mounting(
+    standing_acc_m_s2: Array,
+    moving_gyr_rad_s: Array,
+    *,
+    pelvis_right: Array,
+    rate_hz: float,
+    cutoff_hz: float,
+    keep: NDArray[np.bool_] | None = None,
+) -> Array:
+    """Frames of the sensors from the sensors alone: up from standing, right from movement.
+
+    Used as mounting, they take every segment to be upright and to face forward in standing
+    (methods §4.1-4.5).
+
+    Parameters
+    ----------
+    standing_acc_m_s2 : ndarray, shape (7, 3, n)
+        In quiet standing.
+    moving_gyr_rad_s : ndarray, shape (7, 3, m)
+        In walking or running.
+    pelvis_right : ndarray, shape (3,)
+        Axis of the pelvis sensor that is mounted to point right.
+    rate_hz : float
+        Sampling rate.
+    cutoff_hz : float
+        Low-pass before the main axis is sought.
+    keep : ndarray of bool, shape (m,), optional
+        Samples of the movement that count, for example without turns of the path.
+
+    Returns
+    -------
+    ndarray, shape (7, 3, 3)
+        ``r_level_from_sensor``: rows x (forward), y (up), z (right).
+
+    Raises
+    ------
+    RecordingError
+        If nothing turns.
+    """
+    up = [standing_vertical(acc) for acc in standing_acc_m_s2]
+    rate = butterworth_lowpass(
+        moving_gyr_rad_s,
+        cutoff_hz=cutoff_hz,
+        rate_hz=rate_hz,
+        order=2,
+        direction="zero_lag",
+        pad_s=0.5,
+    )
+    chosen = np.ones(rate.shape[2], dtype=np.bool_) if keep is None else keep
+    frames = {0: anatomical_frame(up[0], pelvis_right)}
+    for side in ("right", "left"):
+        shank = SEGMENTS.index(f"{side}_shank")
+        axis = main_axis(rate[shank], up[shank], chosen).axis
+        right = pointing_right(axis, rate[shank][:, chosen], place=SEGMENTS[shank])
+        swing = right @ rate[shank][:, chosen]
+        frames[shank] = anatomical_frame(up[shank], right)
+        for name in (f"{side}_thigh", f"{side}_foot"):
+            j = SEGMENTS.index(name)
+            axis = main_axis(rate[j], up[j], chosen).axis
+            own = pointing_right(axis, rate[j][:, chosen], shank_rate=swing, place=name)
+            frames[j] = anatomical_frame(up[j], own)
+    return np.stack([frames[j] for j in range(len(SEGMENTS))])

@@ -160,7 +160,8 @@ def centres_in_sensors(centre_m: Array, position_m: Array, r_world_from_sensor: 
     Returns
     -------
     ndarray, shape (3,)
-        Samples with NaN are left out.
+        Samples with NaN are left out; NaN if no other is there.
     """
     local = np.einsum("nba,nb->na", r_world_from_sensor, centre_m - position_m)
-    return np.asarray(np.nanmean(local, axis=0))
+    known = np.isfinite(local).all(axis=1)
+    return np.asarray(local[known].mean(axis=0)) if known.any() else np.full(3, np.nan)

@@ -62,8 +62,9 @@ def joint_centre_of(
     *,
     cutoff_hz: float,
     prior_m: tuple[Array, Array],
-    prior_sd_m: float,
+    prior_sd_m: float | tuple[float, float],
     noise_m_s2: float,
+    independent_s: float,
     axes: tuple[Array, Array] | None = None,
 ) -> JointCentreFit:
     """Vectors from both sensors to the centre of their joint.
@@ -78,12 +79,15 @@ def joint_centre_of(
         Low-pass before rates are differentiated (10-15 Hz).
     prior_m : (ndarray, ndarray)
         Rough vectors from the sensors to the centre: start of the search.
-    prior_sd_m : float
+    prior_sd_m : float or (float, float)
         How rough; infinity uses them as the start only. Where the movement says nothing about a
         direction (along the axis of a hinge), the prior decides.
     noise_m_s2 : float
         Size of the residual that is expected (soft tissue); weighs signals against the prior. An
         effective number of independent samples is taken from the cutoff.
+    independent_s : float
+        How much of the recording says something new: soft tissue does the same in every stride, so
+        that many strides weigh as much as one (infinity: the whole recording counts).
     axes : (ndarray, ndarray), optional
         Axis of a hinge in both frames: the mean component along it is taken off both vectors.
 
@@ -99,13 +103,15 @@ def joint_centre_of(
         for acc, gyr in (proximal, distal)
     )
     # neighbouring samples are alike: about two independent ones per period of the cutoff
-    weight = np.sqrt(min(1.0, 2.0 * cutoff_hz / rate_hz)) / noise_m_s2
+    share = min(1.0, independent_s * rate_hz / len(a1))
+    weight = np.sqrt(share * min(1.0, 2.0 * cutoff_hz / rate_hz)) / noise_m_s2
     start = np.concatenate(prior_m)
+    prior_sd = np.repeat(np.broadcast_to(np.asarray(prior_sd_m, dtype=np.float64), 2), 3)
 
     def residual(r: Array) -> Array:
         one = np.linalg.norm(a1 + k1 @ r[:3], axis=1)
         two = np.linalg.norm(a2 + k2 @ r[3:], axis=1)
-        return np.concatenate([weight * (one - two), (r - start) / prior_sd_m])
+        return np.concatenate([weight * (one - two), (r - start) / prior_sd])
 
     found = least_squares(residual, start, method="lm", x_scale=0.1)
     r1, r2 = found.x[:3], found.x[3:]

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
+import numpy as np
+
 Integrator = Literal["midpoint", "euler"]
 
 
@@ -30,6 +32,9 @@ class FilterOptions:
     gate : float
         Largest squared, normalised innovation of a constraint (three degrees of freedom); infinity
         believes all.
+    longest_refusal_s : float
+        A constraint that was not believed for this time, refused or not due, is believed at its next
+        sample: then the filter is wrong, not the constraint.
     checkpoint_spacing : int
         Samples between two checkpoints of the smoother. Changes memory and speed only.
 
@@ -45,6 +50,7 @@ class FilterOptions:
     joint_rate_hz: float | None
     joint_correlation_s: float
     gate: float
+    longest_refusal_s: float
     checkpoint_spacing: int
 
     def joint_inflation(self, rate_hz: float) -> float:
@@ -58,6 +64,18 @@ class FilterOptions:
         applied_hz = min(rate_hz, self.joint_rate_hz or rate_hz)
         return max(1.0, math.sqrt(applied_hz * self.joint_correlation_s))
 
+    def patience(self, rate_hz: float) -> int:
+        """Samples after which a refused constraint is believed.
+
+        Parameters
+        ----------
+        rate_hz : float
+            Sampling rate of the recording.
+        """
+        if math.isinf(self.longest_refusal_s):
+            return np.iinfo(np.int64).max
+        return round(self.longest_refusal_s * rate_hz)
+
 
 #: As printed (dissertation §4.3.4.2, Fig. 4.3), and where it is silent as methods §1.2 and §1.5 say.
 PRINTED_OPTIONS: Final = FilterOptions(
@@ -67,13 +85,14 @@ PRINTED_OPTIONS: Final = FilterOptions(
     joint_rate_hz=None,
     joint_correlation_s=0.0,
     gate=math.inf,
+    longest_refusal_s=math.inf,
     checkpoint_spacing=64,
 )
 
 #: Methods §1.6 (joints at 50 Hz, errors alike over 0.05-0.1 s), §1.12 (contact point, bias). Gate:
 #: ten standard deviations. The 99.9 % of chi-squared of methods §1.5 (16.27) refuses joint centres
 #: whenever soft tissue wobbles after an impact, until the pelvis has drifted off for good (hip
-#: flexion of the simulated runner wrong by 10°).
+#: flexion of the simulated runner wrong by 10°). After two strides of refusals it is believed [N].
 RECOMMENDED_OPTIONS: Final = FilterOptions(
     integrator="midpoint",
     gyro_bias=True,
@@ -81,5 +100,6 @@ RECOMMENDED_OPTIONS: Final = FilterOptions(
     joint_rate_hz=50.0,
     joint_correlation_s=0.08,
     gate=100.0,
+    longest_refusal_s=1.5,
     checkpoint_spacing=64,
 )

@@ -73,6 +73,7 @@ def kernel_model(
         step_s=1.0 / rate_hz,
         midpoint=options.integrator == "midpoint",
         noise=np.array(noise.step_noise(rate_hz, with_bias=options.gyro_bias)),
+        roughness=noise.integration_noise(signals, rate_hz),
         kind=np.array([row[0] for row in rows], dtype=np.int64),
         first=np.array([row[1] for row in rows], dtype=np.int64),
         second=np.array([row[2] for row in rows], dtype=np.int64),
@@ -80,6 +81,7 @@ def kernel_model(
         sd=np.array([row[4] for row in rows]).reshape(-1, 3),
         active=active,
         gate=options.gate,
+        patience=options.patience(rate_hz),
         joints=np.array(
             [(body.index(j.proximal), body.index(j.distal)) for j in body.joints], dtype=np.int64
         ).reshape(-1, 2),
@@ -114,6 +116,7 @@ def run_passes(model: KernelModel, start: Start, options: FilterOptions, method:
     # the forward pass of the smoother leaves the results to the backward pass
     forward = (states[:0], angles, variances) if smooth else (states, angles, variances)
     refused = np.zeros(len(model.kind), dtype=np.int64)
+    waiting = np.zeros_like(refused)
     origin = np.zeros(3)
     origins, checkpoints = [], []
     record = empty_record(1, *sizes)
@@ -123,8 +126,8 @@ def run_passes(model: KernelModel, start: Start, options: FilterOptions, method:
         origin = origin + common
         origins.append(origin)
         if smooth:
-            checkpoints.append((state.copy(), p.copy()))
-        filter_piece(model, begin, end, state, p, record, *forward, refused)
+            checkpoints.append((state.copy(), p.copy(), waiting.copy()))
+        filter_piece(model, begin, end, state, p, waiting, record, *forward, refused)
     if smooth:
         _smooth(model, pieces, checkpoints, (states, angles, variances))
     for (begin, end), shift in zip(pieces, origins, strict=True):
@@ -135,7 +138,7 @@ def run_passes(model: KernelModel, start: Start, options: FilterOptions, method:
 def _smooth(
     model: KernelModel,
     pieces: list[tuple[int, int]],
-    checkpoints: list[tuple[Array, Array]],
+    checkpoints: list[tuple[Array, Array, NDArray[np.int64]]],
     results: tuple[Array, Array, Array],
 ) -> None:
     """Backward pass: every piece once more forward with a full record, then back."""
@@ -147,8 +150,8 @@ def _smooth(
     nothing = (results[0][:0], results[1], results[2])
     uncounted = np.zeros(c, dtype=np.int64)
     for begin, end in reversed(pieces):
-        state, p = checkpoints.pop()
-        filter_piece(model, begin, end, state, p, record, *nothing, uncounted)
+        state, p, waiting = checkpoints.pop()
+        filter_piece(model, begin, end, state, p, waiting, record, *nothing, uncounted)
         smooth_piece(model, begin, end, adjoint, information, record, *results)
 
 

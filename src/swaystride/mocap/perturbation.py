@@ -49,7 +49,29 @@ class Person:
     hip_centres_m: ArrayLike | None = None
 
 
-def perturbed_angles(recording: MarkerRecording, person: Person) -> pd.DataFrame:
+@dataclass(frozen=True, eq=False)
+class ShiftedAngles:
+    """Joint angles with one kind of joint centre shifted, mirrored on both legs.
+
+    Parameters
+    ----------
+    shifted : {"hip", "knee", "ankle"}
+    direction : {"AP", "CC", "ML"}
+    sign : {1, -1}
+    shift_m : dict of str to float
+        Signed size by side.
+    joint_angle_rad : ndarray, shape (6, 3, n)
+        In the order of :data:`swaystride.lower_limb_joints.JOINT_NAMES` and ``ANGLES``.
+    """
+
+    shifted: JointKind
+    direction: str
+    sign: int
+    shift_m: dict[str, float]
+    joint_angle_rad: Array
+
+
+def shifted_angles(recording: MarkerRecording, person: Person) -> tuple[Array, list[ShiftedAngles]]:
     """Shift each joint centre to both sides along each axis and compute all angles again.
 
     Both legs are shifted at once, mirrored. The shift is the standard deviation between people; for
@@ -63,36 +85,76 @@ def perturbed_angles(recording: MarkerRecording, person: Person) -> pd.DataFrame
 
     Returns
     -------
+    reference_rad : ndarray, shape (6, 3, n)
+        Without a shift.
+    shifted : list of ShiftedAngles
+        Eighteen, by joint, direction and sign (positive first).
+    """
+    found = []
+    for kind in JOINTS:
+        for d, direction in enumerate(DIRECTIONS):
+            for sign in (1, -1):
+                sizes: dict[str, float] = {
+                    side: sign * size
+                    for side, size in zip(SIDES, _sizes(kind, d, person), strict=True)
+                }
+                shift = {f"{side}_{kind}": size * np.eye(3)[d] for side, size in sizes.items()}
+                angles = _angles(recording, person, shift)
+                found.append(ShiftedAngles(kind, direction, sign, sizes, angles))
+    return _angles(recording, person, {}), found
+
+
+def perturbed_angles(recording: MarkerRecording, person: Person) -> pd.DataFrame:
+    """What shifted joint centres do to the angles: :func:`shifted_angles` in numbers.
+
+    Parameters
+    ----------
+    recording : MarkerRecording
+        Clean markers, for example of some strides.
+    person : Person
+
+    Returns
+    -------
+    DataFrame
+        As :func:`perturbation_table`.
+    """
+    return perturbation_table(*shifted_angles(recording, person))
+
+
+def perturbation_table(reference_rad: Array, shifted: list[ShiftedAngles]) -> pd.DataFrame:
+    """Offset and change of shape of every angle under every shift.
+
+    Parameters
+    ----------
+    reference_rad : ndarray, shape (6, 3, n)
+    shifted : list of ShiftedAngles
+        Both as from :func:`shifted_angles`.
+
+    Returns
+    -------
     DataFrame
         ``shifted`` (joint kind), ``direction``, ``shift_m`` (signed), ``joint``, ``angle``,
         ``offset_deg`` (mean change) and ``shape_deg`` (root mean square of the change about its
         mean).
     """
-    reference = _angles(recording, person, {})
     rows = []
-    for kind in JOINTS:
-        for d, direction in enumerate(DIRECTIONS):
-            for sign in (1.0, -1.0):
-                shift = {
-                    f"{side}_{kind}": sign * size * np.eye(3)[d]
-                    for side, size in zip(SIDES, _sizes(kind, d, person), strict=True)
-                }
-                change = (_angles(recording, person, shift) - reference) * DEG_PER_RAD
-                offset = np.nanmean(change, axis=2)
-                shape = np.nanstd(change, axis=2)
-                for j, joint in enumerate(JOINT_NAMES):
-                    for a, angle in enumerate(ANGLES):
-                        rows.append(
-                            {
-                                "shifted": kind,
-                                "direction": direction,
-                                "shift_m": float(shift[f"{joint.split('_')[0]}_{kind}"][d]),
-                                "joint": joint,
-                                "angle": angle,
-                                "offset_deg": float(offset[j, a]),
-                                "shape_deg": float(shape[j, a]),
-                            }
-                        )
+    for one in shifted:
+        change = (one.joint_angle_rad - reference_rad) * DEG_PER_RAD
+        offset = np.nanmean(change, axis=2)
+        shape = np.nanstd(change, axis=2)
+        for j, joint in enumerate(JOINT_NAMES):
+            for a, angle in enumerate(ANGLES):
+                rows.append(
+                    {
+                        "shifted": one.shifted,
+                        "direction": one.direction,
+                        "shift_m": one.shift_m[joint.split("_")[0]],
+                        "joint": joint,
+                        "angle": angle,
+                        "offset_deg": float(offset[j, a]),
+                        "shape_deg": float(shape[j, a]),
+                    }
+                )
     return pd.DataFrame(rows)
 
 

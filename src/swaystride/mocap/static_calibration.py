@@ -37,15 +37,20 @@ class OpticalOptions:
         Technical frames by axes through points, or by a rigid fit; clusters need the fit.
     hara_marker_offset : bool
         See :func:`swaystride.mocap.hip_centre.hara_hip_centres`.
+    shank_axis : {"malleoli", "knee"}
+        Where right is for a shank: from the malleoli (ISB, methods §5.6), or from the knee as for the
+        thigh, the untorsioned tibia of the conventional gait model. Between the two lies the torsion
+        of the tibia, about 15°, which turns dorsiflexion into inversion.
     """
 
     centres: Literal["average_axes", "medial_markers"]
     frames: FrameMethod
     hara_marker_offset: bool
+    shank_axis: Literal["malleoli", "knee"]
 
 
-#: Methods §5.4-5.6: average axes, frames through the trios, offset of the markers [N].
-PRINTED_OPTIONS: Final = OpticalOptions("average_axes", "axes", True)
+#: Methods §5.4-5.6: average axes, frames through the trios, offset of the markers [N], malleoli.
+PRINTED_OPTIONS: Final = OpticalOptions("average_axes", "axes", True, "malleoli")
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,10 +245,11 @@ def _anatomical_frames(
         hip = origin + pelvis @ hips[row]
         knee_centre, ankle_centre = _distal_centres(seen, markers, side, body, options, axes)
         right = 1.0 if side == "right" else -1.0
-        frames[f"{side}_thigh"] = _long_frame(hip - knee_centre, right * (knee - knee_centre))
-        frames[f"{side}_shank"] = _long_frame(
-            knee_centre - ankle_centre, right * (ankle - ankle_centre)
-        )
+        outward = right * (knee - knee_centre)
+        frames[f"{side}_thigh"] = _long_frame(hip - knee_centre, outward)
+        if options.shank_axis == "malleoli":
+            outward = right * (ankle - ankle_centre)
+        frames[f"{side}_shank"] = _long_frame(knee_centre - ankle_centre, outward)
         up = np.broadcast_to(np.array(_UP), heel.shape)
         forward = across(toe - heel, up)
         frames[f"{side}_foot"] = frame_of(forward, up, np.cross(forward, up))

@@ -1,8 +1,10 @@
 """Joint angles of the error-state filter against Vicon, in one walking trial.
 
-Three estimates, each compared after one constant per angle has been removed:
+Four estimates, each compared after one constant per angle has been removed:
 
-* ``vqf_imu_only`` (the baseline): orientation of every sensor by VQF without magnetometer, mounting
+* ``vqf_optical`` (the baseline): orientation of every sensor by VQF without magnetometer, with the
+  constant heading and mounting that fit the optical segment best (in sample);
+* ``vqf_imu_only``: orientation of every sensor by VQF without magnetometer, mounting
   from quiet standing and the main axis of turning, headings set equal in quiet standing;
 * ``erkf_optical``: mounting and joint centres from the whole optical trial (in sample), started at
   its first sample;
@@ -22,22 +24,23 @@ from typing import Final
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from vqf import offlineVQF
 
-from swaystride.erkf.alignment import (
-    anatomical_frame,
-    main_axis,
-    pointing_right,
-    standing_vertical,
-    straight_samples,
-)
+from swaystride.erkf.alignment import level_mounting, standing_vertical, straight_samples
 from swaystride.erkf.body import (
     LOWER_LIMB_JOINTS,
     SEGMENTS,
     Body,
     lower_limb_body,
 )
-from swaystride.erkf.joint_centres import joint_centre_of, lever_matrices
+from swaystride.erkf.imu_initialisation import (
+    MID_SHANK_CENTRES,
+    CentreSearch,
+    facing_forward,
+    imu_centres,
+    level_orientations,
+    start_at_rest,
+)
+from swaystride.erkf.joint_centres import lever_matrices
 from swaystride.erkf.lower_limbs import ANGLES, estimate_lower_limbs
 from swaystride.erkf.noise import NoiseSet
 from swaystride.erkf.options import FilterOptions
@@ -46,11 +49,7 @@ from swaystride.gait.foot_methods import RECOMMENDED
 from swaystride.gait.zero_velocity import find_zero_velocity
 from swaystride.lower_limb_joints import lower_limb_angles
 from swaystride.recording import make_recording
-from swaystride.rotations import (
-    exp_map,
-    matrix_from_quaternion,
-    quaternion_from_matrix,
-)
+from swaystride.rotations import exp_map, quaternion_from_matrix
 from swaystride.units import DEG_PER_RAD, GRAVITY_M_S2
 from swaystride.validation.lower_limb_walk_recording import (
     RATE_HZ,
@@ -67,19 +66,17 @@ _QUIET_SAMPLES: Final = 300
 _MOTION_HZ, _RATE_HZ, _TURN_HZ, _TURN_RAD_S = 8.0, 15.0, 0.4, 0.3
 #: The pelvis sensor sits on the back with x up and z backwards: its -y points right.
 _PELVIS_RIGHT: Final = np.array([0.0, -1.0, 0.0])
-#: Rough vectors (m) from sensor to joint centre in anatomical axes, right side, for sensors on the
-#: sacrum, in the middle of the lateral thigh and medial shank, and on the instep of an adult.
-_ROUGH_CENTRES: Final = {
-    "hip": ((0.10, -0.07, 0.08), (-0.05, 0.20, -0.08)),
-    "knee": ((-0.05, -0.20, -0.08), (-0.05, 0.17, 0.0)),
-    "ankle": ((-0.05, -0.22, 0.0), (-0.08, -0.02, 0.0)),
-}
-_ROUGH_SD_M, _TISSUE_M_S2 = 0.05, 1.0
+#: As in the running study (docs/decisions.md), with a stride of walking.
+_SEARCH: Final = CentreSearch(
+    cutoff_hz=_MOTION_HZ, rough_sd_m=0.05, pelvis_sd_m=0.02, noise_m_s2=2.0, independent_s=1.1
+)
 _LEVER_M: Final = 0.08
 
 
-def walking_errors(folder: Path, noise: NoiseSet, options: FilterOptions) -> pd.DataFrame:
-    """Errors of the three estimates.
+def walking_errors(
+    folder: Path, noise: NoiseSet, options: FilterOptions, *, baselines: bool
+) -> pd.DataFrame:
+    """Errors of the four estimates.
 
     Parameters
     ----------
@@ -87,6 +84,8 @@ def walking_errors(folder: Path, noise: NoiseSet, options: FilterOptions) -> pd.
         Folder of the data set.
     noise : NoiseSet
     options : FilterOptions
+    baselines : bool
+        Whether VQF, which knows neither noise nor options, is among them.
 
     Returns
     -------
@@ -96,8 +95,13 @@ def walking_errors(folder: Path, noise: NoiseSet, options: FilterOptions) -> pd.
     """
     walk = read_walk(folder)
     reference = angles_deg(walk.rotation)
-    estimates = {
-        "vqf_imu_only": vqf_angles(walk),
+    estimates: dict[str, Array] = {}
+    if baselines:
+        estimates |= {
+            "vqf_optical": vqf_optical_angles(walk),
+            "vqf_imu_only": vqf_angles(walk),
+        }
+    estimates |= {
         "erkf_optical": optical_angles(walk, noise, options),
         "erkf_imu_only": imu_only_angles(walk, noise, options),
     }
@@ -137,22 +141,8 @@ def angles_deg(r_world_from_anatomical: Array) -> Array:
     return lower_limb_angles(r_world_from_anatomical) * DEG_PER_RAD
 
 
-def vqf_orientation(acc_m_s2: Array, gyr_rad_s: Array) -> Array:
-    """Orientations of all sensors by VQF, arbitrary headings, (n, 7, 3, 3).
-
-    Parameters
-    ----------
-    acc_m_s2, gyr_rad_s : ndarray, shape (7, 3, n)
-    """
-    found = [
-        offlineVQF(np.ascontiguousarray(g.T), np.ascontiguousarray(a.T), None, 1.0 / RATE_HZ)
-        for a, g in zip(acc_m_s2, gyr_rad_s, strict=True)
-    ]
-    return np.stack([matrix_from_quaternion(one["quat6D"]) for one in found], axis=1)
-
-
-def optical_mounting(rotation: Array, r_world_from_sensor: Array) -> Array:
-    """Constant mounting and heading that fit a sensor to its optical segment best.
+def optical_mounting(rotation: Array, r_world_from_sensor: Array) -> tuple[float, Array]:
+    """Constant heading and mounting that fit a sensor to its optical segment best.
 
     Parameters
     ----------
@@ -160,10 +150,11 @@ def optical_mounting(rotation: Array, r_world_from_sensor: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (3, 3)
-        ``r_anatomical_from_sensor``.
+    heading_rad : float
+        About the vertical, in front of `r_world_from_sensor`.
+    r_anatomical_from_sensor : ndarray, shape (3, 3)
     """
-    best, mounting = -np.inf, np.eye(3)
+    best, mounting, found_rad = -np.inf, np.eye(3), 0.0
     for heading in np.radians(np.arange(-180.0, 180.0)):
         turned = exp_map([0.0, 0.0, heading]) @ r_world_from_sensor
         mean = np.mean(np.swapaxes(rotation, 1, 2) @ turned, axis=0)
@@ -171,8 +162,29 @@ def optical_mounting(rotation: Array, r_world_from_sensor: Array) -> Array:
         sign = np.sign(np.linalg.det(u @ v))
         # the trace of the best rotation with the mean is largest where the spread is smallest
         if (fit := size[0] + size[1] + sign * size[2]) > best:
-            best, mounting = fit, u @ np.diag([1.0, 1.0, sign]) @ v
-    return np.asarray(mounting)
+            best, found_rad = fit, float(heading)
+            mounting = u @ np.diag([1.0, 1.0, sign]) @ v
+    return found_rad, np.asarray(mounting)
+
+
+def vqf_optical_angles(walk: LimbWalk) -> Array:
+    """Orientations by VQF alone, each with its best constant heading and mounting (in sample).
+
+    Parameters
+    ----------
+    walk : LimbWalk
+
+    Returns
+    -------
+    ndarray, shape (n, 6, 3)
+        Degrees.
+    """
+    by_vqf = level_orientations(walk.acc_m_s2, _unbiased(walk), RATE_HZ)[walk.walking]
+    rotation = np.empty_like(by_vqf)
+    for j in range(7):
+        heading, mounting = optical_mounting(walk.rotation[:, j], by_vqf[:, j])
+        rotation[:, j] = exp_map([0.0, 0.0, heading]) @ by_vqf[:, j] @ mounting.T
+    return angles_deg(rotation)
 
 
 def optical_angles(walk: LimbWalk, noise: NoiseSet, options: FilterOptions) -> Array:
@@ -190,8 +202,8 @@ def optical_angles(walk: LimbWalk, noise: NoiseSet, options: FilterOptions) -> A
         Degrees.
     """
     acc, gyr = walk.acc_m_s2[:, :, walk.walking], walk.gyr_rad_s[:, :, walk.walking]
-    by_vqf = vqf_orientation(acc, gyr)
-    mounting = np.stack([optical_mounting(walk.rotation[:, j], by_vqf[:, j]) for j in range(7)])
+    by_vqf = level_orientations(acc, gyr, RATE_HZ)
+    mounting = np.stack([optical_mounting(walk.rotation[:, j], by_vqf[:, j])[1] for j in range(7)])
     rotation = walk.rotation @ mounting
     centres = {}
     for (one, two), (kind, side, _, _) in zip(_PAIRS, LOWER_LIMB_JOINTS, strict=True):
@@ -247,33 +259,29 @@ def imu_mounting(walk: LimbWalk, gyr_rad_s: Array) -> Array:
     gyr_rad_s : ndarray, shape (7, 3, n_all)
         Without bias.
     """
-    quiet = _quiet(walk)
-    up = [standing_vertical(acc[:, quiet]) for acc in walk.acc_m_s2]
-    rate = low_passed(gyr_rad_s, _RATE_HZ)
+    standing = walk.acc_m_s2[:, :, _quiet(walk)]
     straight = straight_samples(
-        gyr_rad_s[0], up[0], RATE_HZ, cutoff_hz=_TURN_HZ, limit_rad_s=_TURN_RAD_S
+        gyr_rad_s[0],
+        standing_vertical(standing[0]),
+        RATE_HZ,
+        cutoff_hz=_TURN_HZ,
+        limit_rad_s=_TURN_RAD_S,
     )
     straight[: walk.walking.start] = straight[walk.walking.stop :] = False
-    frames = {0: anatomical_frame(up[0], _PELVIS_RIGHT)}
-    for shank, others in ((3, (1, 5)), (4, (2, 6))):
-        axis = main_axis(rate[shank], up[shank], straight).axis
-        right = pointing_right(axis, rate[shank][:, straight], place=SEGMENTS[shank])
-        swing = right @ rate[shank][:, straight]
-        frames[shank] = anatomical_frame(up[shank], right)
-        for j in others:
-            axis = main_axis(rate[j], up[j], straight).axis
-            own = pointing_right(axis, rate[j][:, straight], shank_rate=swing, place=SEGMENTS[j])
-            frames[j] = anatomical_frame(up[j], own)
-    return np.stack([frames[j] for j in range(7)])
+    return level_mounting(
+        standing,
+        gyr_rad_s,
+        pelvis_right=_PELVIS_RIGHT,
+        rate_hz=RATE_HZ,
+        cutoff_hz=_RATE_HZ,
+        keep=straight,
+    )
 
 
 def _same_heading(walk: LimbWalk, gyr: Array, mounting: Array) -> Array:
     """Anatomical orientations by VQF, all facing +x in quiet standing."""
-    rotation = vqf_orientation(walk.acc_m_s2, gyr) @ np.swapaxes(mounting, 1, 2)
-    quiet = _quiet(walk)
-    forward = rotation[(quiet.start + quiet.stop) // 2, :, :, 0]
-    heading = np.arctan2(forward[:, 1], forward[:, 0])
-    return np.asarray(exp_map(np.outer(-heading, [0.0, 0.0, 1.0])) @ rotation)
+    orientation = level_orientations(walk.acc_m_s2, gyr, RATE_HZ)
+    return facing_forward(orientation @ np.swapaxes(mounting, 1, 2), _quiet(walk))
 
 
 def _unbiased(walk: LimbWalk) -> Array:
@@ -318,29 +326,20 @@ def imu_only_angles(walk: LimbWalk, noise: NoiseSet, options: FilterOptions) -> 
     quiet = _quiet(walk)
     begin = (quiet.start + quiet.stop) // 2
     rotation = _same_heading(walk, gyr, mounting)[begin] @ mounting
-    centres, position = {}, np.zeros((7, 3))
     own = walk.walking
-    for (one, two), (kind, side, _, _) in zip(_PAIRS, LOWER_LIMB_JOINTS, strict=True):
-        mirror = np.array([1.0, 1.0, 1.0 if side == "right" else -1.0])
-        rough = [np.array(vector) * mirror for vector in _ROUGH_CENTRES[kind]]
-        fit = joint_centre_of(
-            (walk.acc_m_s2[one][:, own], gyr[one][:, own]),
-            (walk.acc_m_s2[two][:, own], gyr[two][:, own]),
-            RATE_HZ,
-            cutoff_hz=_MOTION_HZ,
-            prior_m=(mounting[one].T @ rough[0], mounting[two].T @ rough[1]),
-            prior_sd_m=_ROUGH_SD_M,
-            noise_m_s2=_TISSUE_M_S2,
-        )
-        centres[f"{side}_{kind}"] = (fit.proximal_m, fit.distal_m)
-        position[two] = (
-            position[one] + rotation[one] @ fit.proximal_m - rotation[two] @ fit.distal_m
-        )
+    fits = imu_centres(
+        walk.acc_m_s2[:, :, own],
+        gyr[:, :, own],
+        mounting,
+        RATE_HZ,
+        rough=MID_SHANK_CENTRES,
+        search=_SEARCH,
+    )
+    centres = {name: (fit.proximal_m, fit.distal_m) for name, fit in fits.items()}
     acc, gyr = walk.acc_m_s2[:, :, begin : own.stop], gyr[:, :, begin : own.stop]
     zero, levers = _feet(acc, gyr)
-    still = np.zeros((7, 3))
-    start = Start(position, still, quaternion_from_matrix(rotation), still, START_AT_REST)
     body = lower_limb_body(mounting, centres, levers)
+    start = start_at_rest(rotation, body, np.zeros((7, 3)), START_AT_REST)
     return _smoothed(acc, gyr, body, zero, start, noise, options)[own.start - begin :]
 
 

@@ -47,10 +47,10 @@ CONTACT_HZ: Final = 30.0
 ONE_STRIDE: Final = 1.3
 _AXES: Final = dict(zip(ANGLES, "ZXY", strict=True))
 #: Knee and ankle centres midway between the landmarks, as the authors had them.
-MEDIAL: Final = OpticalOptions("medial_markers", "least_squares", True)
+MEDIAL: Final = OpticalOptions("medial_markers", "least_squares", True, "malleoli")
 #: Recipe of the knee axis frame that the document uses.
 RECIPE: Final = "spine_plane"
-AVERAGE: Final = OpticalOptions("average_axes", "least_squares", True)
+AVERAGE: Final = OpticalOptions("average_axes", "least_squares", True, "malleoli")
 
 
 @dataclass(frozen=True, eq=False)
