@@ -1,7 +1,8 @@
 # swaystride: `make` sets up the environment and builds every table and figure.
 #
 #   make              everything at published scale     make demo       the same in small
-#   make feedback     one study (or intensity, imu_design)  make variants  every variant of every study
+#   make feedback     one study (or intensity, imu_design, kinematics)
+#   make variants     every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
 #   make dry-run      what would be done                make benchmark  time and memory of the studies
@@ -22,7 +23,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback intensity imu_design variants validation benchmark benchmark-models benchmark-feet benchmark-running-body peers recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback intensity imu_design kinematics variants validation benchmark benchmark-models benchmark-feet benchmark-running-body peers recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -38,6 +39,9 @@ intensity: setup
 
 imu_design: setup
 	@$(SNAKEMAKE) -- imu_design
+
+kinematics: setup
+	@$(SNAKEMAKE) -- kinematics
 
 variants: setup
 	@$(SNAKEMAKE) -- variants

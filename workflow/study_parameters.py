@@ -23,7 +23,15 @@ SCHEMAS = REPOSITORY / "workflow" / "schemas"
 STAGES = ("metrics", "models")
 
 #: Section of the parameters -> the first stage that uses it. Others belong to all variants.
-STAGE_OF_SECTION = {"analysis.measurement": "metrics", "analysis.model": "models"}
+STAGE_OF_SECTION = {
+    "analysis.measurement": "metrics",
+    "analysis.optics": "metrics",
+    "analysis.erkf": "metrics",
+    "analysis.zero_velocity": "metrics",
+    "analysis.measures": "metrics",
+    "analysis.perturbation": "metrics",
+    "analysis.model": "models",
+}
 
 #: The variant whose results the others share up to their first own stage.
 BASE_VARIANT = "printed"
@@ -38,7 +46,7 @@ def load_study(study: str) -> Tree:
     validate(tree, schema, file=file)
     for name, variant in tree["variants"].items():
         for path in variant["changes"]:
-            stage = STAGE_OF_SECTION.get(path.rpartition(".")[0])
+            stage = STAGE_OF_SECTION.get(".".join(path.split(".")[:2]))
             if stage is None or STAGES.index(stage) < STAGES.index(variant["first_stage"]):
                 raise ConfigurationError(
                     f"{path!r} is used before the variant begins",

@@ -6,9 +6,10 @@ import pytest
 
 from import_graph import REPOSITORY
 from swaystride.configuration import load_yaml, plain_values
-from swaystride.simulate import imu_design_parameters
+from swaystride.simulate import imu_design_parameters, kinematics_parameters
 from swaystride.simulate.feedback_parameters import FeedbackCohort, cohort_from_config
 from swaystride.simulate.imu_design_parameters import ImuDesignCohort
+from swaystride.simulate.kinematics_parameters import KinematicsCohort
 from swaystride.simulate.running_body import RunnerBody, runner_body, usual_shares, usual_shoe
 from swaystride.simulate.running_manner import (
     NO_VARIABILITY,
@@ -33,6 +34,13 @@ def runners() -> ImuDesignCohort:
     """The published cohort of the IMU-design study."""
     tree = load_yaml(REPOSITORY / "config" / "studies" / "imu_design.yaml")
     return imu_design_parameters.cohort_from_config(plain_values(tree["simulation"]))
+
+
+@pytest.fixture(scope="session")
+def treadmill_runners() -> KinematicsCohort:
+    """The published cohort of the kinematics study."""
+    tree = load_yaml(REPOSITORY / "config" / "studies" / "kinematics.yaml")
+    return kinematics_parameters.cohort_from_config(plain_values(tree["simulation"]))
 
 
 @pytest.fixture(scope="session")

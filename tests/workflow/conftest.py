@@ -66,12 +66,12 @@ class Sandbox:
 
 
 def checkout(root):
-    """Copy the repository, generated files aside."""
+    """Copy the repository, generated files aside but for compiled code, which takes minutes to make."""
     for part in PARTS:
         source, target = REPOSITORY / part, root / part
         target.parent.mkdir(parents=True, exist_ok=True)
         if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(source, target)
         else:
             shutil.copy2(source, target)
     return Sandbox(root)

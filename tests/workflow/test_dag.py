@@ -35,14 +35,25 @@ IMU_DESIGN = {
     "imu_design_raw_figure": 2,
     "imu_design_truth": 1,
 }
+KINEMATICS = {
+    "kinematics_design": 1,
+    "kinematics_quality": 1,
+    "kinematics_table": 14,
+    "kinematics_figure": 9,
+    "kinematics_truth_table": 3,
+}
 SHARED = {
-    "parameter_sections": 5 + 4 + 9,
-    "study_parameters": 3,
-    "study_page": 3,
+    "parameter_sections": 5 + 4 + 9 + 7,
+    "study_parameters": 4,
+    "study_page": 4,
     "cohort_page": 1,
     "provenance": 1,
     "all": 1,
 }
+
+
+#: Stages of the kinematics study that each participant has.
+STAGES = ("simulate", "import", "estimate", "measure", "perturbation", "course", "truth")
 
 
 def per_participant(study, n):
@@ -50,10 +61,10 @@ def per_participant(study, n):
 
 
 @pytest.mark.parametrize(
-    ("cohort", "n_feedback", "n_intensity", "n_imu_design"),
+    ("cohort", "n_feedback", "n_intensity", "n_runners"),
     [("synthetic", 19, 10, 6), ("synthetic_demo", 6, 4, 2)],
 )
-def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_imu_design):
+def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_runners):
     planned = sandbox.planned("--config", f"cohort={cohort}", "--", "all")
     assert planned == {
         **FEEDBACK,
@@ -62,13 +73,15 @@ def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_i
         **SHARED,
         **per_participant("feedback", n_feedback),
         **per_participant("intensity", n_intensity),
-        **per_participant("imu_design", n_imu_design),
-        "imu_design_stride_errors": n_imu_design,
+        **per_participant("imu_design", n_runners),
+        "imu_design_stride_errors": n_runners,
+        **KINEMATICS,
+        **{f"kinematics_{stage}": n_runners for stage in STAGES},
     }
     assert sum(planned.values()) < 300
 
 
-STUDIES = ("feedback", "intensity", "imu_design")
+STUDIES = ("feedback", "intensity", "imu_design", "kinematics")
 
 
 @pytest.mark.parametrize("study", STUDIES)
@@ -82,7 +95,7 @@ def test_one_study_is_built_without_the_others_and_the_page_of_the_cohort(sandbo
 
 def test_variants_share_the_stages_before_their_first_own(sandbox):
     planned = sandbox.planned("variants")
-    assert planned["study_page"] == 3 + 2 + 2
+    assert planned["study_page"] == 3 + 2 + 2 + 4
     assert planned["feedback_import"] == 19
     # printed and recommended measure anew; n_coding_reset shares the measures of printed
     assert planned["feedback_metrics"] == 2 * 19

@@ -17,7 +17,9 @@ def as_lab(sandbox, demo, study):
     path = sandbox.root / "config/config.yaml"
     text = path.read_text(encoding="utf-8").replace("cohort: synthetic\n", "cohort: my_lab\n")
     text = text.replace("  # my_lab:", "  my_lab:")
-    text = text.replace("studies: [feedback, intensity, imu_design]", f"studies: [{study}]")
+    text = text.replace(
+        "studies: [feedback, intensity, imu_design, kinematics]", f"studies: [{study}]"
+    )
     path.write_text(text, encoding="utf-8")
     return sandbox
 

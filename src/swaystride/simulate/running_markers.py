@@ -148,6 +148,7 @@ def filmed(
     rate_hz: float,
     errors: CameraErrors,
     rng: np.random.Generator,
+    start_s: float = 0.0,
     chunk_s: float = 60.0,
 ) -> Iterator[MarkerChunk]:
     """Film a motion, part by part.
@@ -166,6 +167,8 @@ def filmed(
         Noise and gaps.
     rng : numpy.random.Generator
         Source of both.
+    start_s : float
+        Time of the first frame in the motion: the cameras may start a little early or late.
     chunk_s : float
         Length of the parts; it decides the order of the random numbers.
 
@@ -177,7 +180,7 @@ def filmed(
     lost = _gaps(total, len(markers.names), errors, rng)
     every = max(1, round(chunk_s * rate_hz))
     for first in range(0, total, every):
-        time = np.arange(first, min(first + every, total)) / rate_hz
+        time = start_s + np.arange(first, min(first + every, total)) / rate_hz
         position = true_positions(motion, markers.skin, time)
         position[..., 0] -= motion.belt_way_m(time)[:, None]
         position += errors.noise_m * rng.standard_normal(position.shape)
