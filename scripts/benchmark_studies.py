@@ -28,7 +28,9 @@ def main() -> None:
     """Build, measure, print."""
     parser = script_parser(__doc__)
     parser.add_argument("--cores", type=int, default=2)
-    parser.add_argument("--studies", nargs="+", default=["feedback", "intensity", "imu_design"])
+    parser.add_argument(
+        "--studies", nargs="+", default=["feedback", "intensity", "imu_design", "kinematics"]
+    )
     arguments = parser.parse_args()
     for study in arguments.studies:
         with TemporaryDirectory() as name:

@@ -12,11 +12,11 @@ from swaystride.studies.kinematics.design import read_design
 from swaystride.studies.kinematics.equipment import measured_lengths
 from swaystride.studies.kinematics.estimate_files import (
     add_estimates,
-    load_trial,
     start_estimates,
     usable_trials,
 )
 from swaystride.studies.kinematics.estimation import estimate_trial
+from swaystride.studies.kinematics.imported_trials import load_trial
 
 
 def main() -> None:
@@ -32,9 +32,7 @@ def main() -> None:
     given, participant = arguments.parameters, arguments.participant
     design = read_design(arguments.raw)
     markers = settings.markers(given["markers"])
-    person = measured_lengths(
-        design.participants.set_index("participant").loc[participant], markers
-    )
+    person = measured_lengths(design.person(participant), markers)
     method = settings.filter_method(given["erkf"], given["contacts"], given["zero_velocity"])
     optics = settings.optical_method(given["optics"])
     trials, rows = usable_trials(arguments.recordings), []

@@ -7,8 +7,9 @@ from swaystride.configuration import from_mapping
 from swaystride.studies.kinematics import settings
 from swaystride.studies.kinematics.design import read_design
 from swaystride.studies.kinematics.equipment import measured_lengths
-from swaystride.studies.kinematics.estimate_files import load_trial, usable_trials
+from swaystride.studies.kinematics.estimate_files import usable_trials
 from swaystride.studies.kinematics.estimation import contact_times_s
+from swaystride.studies.kinematics.imported_trials import load_trial
 from swaystride.studies.kinematics.optics import calibrated_person
 from swaystride.studies.kinematics.participant_measures import joined_tables, named
 from swaystride.studies.kinematics.perturbation import (
@@ -30,8 +31,9 @@ def main() -> None:
     parser.add_argument("--perturbation-curves", type=Path, required=True)
     arguments = parser.parse_args()
     given, participant = arguments.parameters, arguments.participant
-    people = read_design(arguments.raw).participants.set_index("participant")
-    person = measured_lengths(people.loc[participant], settings.markers(given["markers"]))
+    person = measured_lengths(
+        read_design(arguments.raw).person(participant), settings.markers(given["markers"])
+    )
     method = settings.optical_method(given["optics"])
     rule = from_mapping(PerturbationRule, given["perturbation"], place="analysis.perturbation")
     contacts = settings.contact_rule(given["contacts"])

@@ -41,10 +41,11 @@ def main() -> None:
         return read_design(arguments.raw).participants
 
     def text():
+        by_energy = given["erkf"]["zero_velocity"] == "gyroscopic_energy"
         return study4_text(
             planned_trials(read_design(arguments.raw).trials),
             *(stages.read(kind) for kind in ("strides", "agreement", "planar", "course")),
-            energy_window_s=given["zero_velocity"]["window_s"],
+            energy_window_s=given["zero_velocity"]["window_s"] if by_energy else None,
         )
 
     def literature():

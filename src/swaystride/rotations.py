@@ -11,10 +11,13 @@ The arithmetic is :class:`scipy.spatial.transform.Rotation`; this module pins do
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
 
@@ -42,7 +45,7 @@ def quaternion_from_matrix(r_b_from_a: ArrayLike) -> Array:
         r_b_from_a,
         (3, 3),
         (4,),
-        lambda rows: Rotation.from_matrix(rows).as_quat(canonical=True, scalar_first=True),
+        lambda rows: _rotations().from_matrix(rows).as_quat(canonical=True, scalar_first=True),
     )
 
 
@@ -69,7 +72,7 @@ def matrix_from_quaternion(q_b_from_a: ArrayLike) -> Array:
         q_b_from_a,
         (4,),
         (3, 3),
-        lambda rows: Rotation.from_quat(rows, scalar_first=True).as_matrix(),
+        lambda rows: _rotations().from_quat(rows, scalar_first=True).as_matrix(),
     )
 
 
@@ -96,8 +99,8 @@ def quaternion_from_roll_pitch_yaw(roll_pitch_yaw_rad: ArrayLike) -> Array:
         roll_pitch_yaw_rad,
         (3,),
         (4,),
-        lambda rows: Rotation.from_euler("ZYX", rows[:, ::-1]).as_quat(
-            canonical=True, scalar_first=True
+        lambda rows: (
+            _rotations().from_euler("ZYX", rows[:, ::-1]).as_quat(canonical=True, scalar_first=True)
         ),
     )
 
@@ -120,7 +123,7 @@ def exp_map(rotation_vector_rad: ArrayLike) -> Array:
     array([0., 1., 0.])
     """
     return _by_row(
-        rotation_vector_rad, (3,), (3, 3), lambda rows: Rotation.from_rotvec(rows).as_matrix()
+        rotation_vector_rad, (3,), (3, 3), lambda rows: _rotations().from_rotvec(rows).as_matrix()
     )
 
 
@@ -141,7 +144,9 @@ def log_map(r_b_from_a: ArrayLike) -> Array:
     >>> log_map(exp_map([0.1, -0.2, 0.3])).round(12)
     array([ 0.1, -0.2,  0.3])
     """
-    return _by_row(r_b_from_a, (3, 3), (3,), lambda rows: Rotation.from_matrix(rows).as_rotvec())
+    return _by_row(
+        r_b_from_a, (3, 3), (3,), lambda rows: _rotations().from_matrix(rows).as_rotvec()
+    )
 
 
 def matrix_from_cardan_zxy(angles_rad: ArrayLike) -> Array:
@@ -166,7 +171,7 @@ def matrix_from_cardan_zxy(angles_rad: ArrayLike) -> Array:
            [0., 0., 1.]])
     """
     return _by_row(
-        angles_rad, (3,), (3, 3), lambda rows: Rotation.from_euler("ZXY", rows).as_matrix()
+        angles_rad, (3,), (3, 3), lambda rows: _rotations().from_euler("ZXY", rows).as_matrix()
     )
 
 
@@ -195,6 +200,13 @@ def cardan_zxy_from_matrix(r_proximal_from_distal: ArrayLike) -> Array:
     alpha = np.arctan2(-r[..., 0, 1], r[..., 1, 1])
     gamma = np.arctan2(-r[..., 2, 0], r[..., 2, 2])
     return np.stack([alpha, beta, gamma], axis=-1)
+
+
+def _rotations() -> type[Rotation]:
+    """SciPy's rotations, loaded at their first use: tables and figures never turn anything."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation
 
 
 def _by_row(

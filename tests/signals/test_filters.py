@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from swaystride.errors import RecordingError
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import butterworth_lowpass, lowpass_without_lag
 
 RATE_HZ = 100.0
 TIME_S = np.arange(6000) / RATE_HZ
@@ -54,3 +54,9 @@ def test_impossible_requests_are_refused():
         butterworth_lowpass(np.ones(9), direction="causal", **{**CHOICES, "cutoff_hz": 60.0})
     with pytest.raises(RecordingError, match="missing samples"):
         butterworth_lowpass([1.0, np.nan, 1.0], direction="causal", **CHOICES)
+
+
+def test_the_usual_filter_is_the_one_of_second_order_padded_by_three_periods():
+    wave = np.sin(2 * np.pi * TIME_S) + TIME_S
+    spelled = butterworth_lowpass(wave, direction="zero_lag", **{**CHOICES, "pad_s": 1.5})
+    np.testing.assert_array_equal(lowpass_without_lag(wave, 2.0, RATE_HZ), spelled)

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from swaystride.errors import RecordingError
-from swaystride.sway.metrics import ELLIPSE_Z, prediction_factor, sway_metrics
+from swaystride.stats.prediction_ellipse import prediction_factor
+from swaystride.sway.metrics import ELLIPSE_Z, sway_metrics
 
 SEEDS = st.integers(0, 2**32 - 1)
 LENGTHS = {"phi_rms", "ap_rms", "ml_rms", "phi_mv", "ap_mv", "ml_mv", "path_length"}

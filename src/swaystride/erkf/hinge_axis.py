@@ -4,6 +4,8 @@ The parts of both angular rates that are perpendicular to the axis have the same
 and Raisch 2012). While a segment moves slowly its accelerometer shows gravity, whose part along the
 axis is the same on both segments (Olsson, Kok, Seel and Halvorsen 2020); this tells the signs of both
 axes apart, which rates cannot.
+
+For joints that are hinges. The study of running takes the mediolateral axes of the mounting instead.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from swaystride.erkf.hinge_residuals import (
     residuals,
 )
 from swaystride.errors import RecordingError
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 from swaystride.units import RAD_PER_DEG
 
 Array = NDArray[np.float64]
@@ -171,7 +173,7 @@ def hinge_axis_of(
     Olsson, Kok, Seel & Halvorsen (2020), Sensors 20(12), 3534.
     """
     (a1, w1), (a2, w2) = (
-        tuple(_smoothed(signal, rate_hz, search.cutoff_hz).T for signal in sensor)
+        tuple(lowpass_without_lag(signal, search.cutoff_hz, rate_hz).T for signal in sensor)
         for sensor in (proximal, distal)
     )
     _require_movement((w1, w2), search, place)
@@ -226,18 +228,6 @@ def _misfit(end: Minimum, samples: HingeSamples) -> float:
     if len(samples.forces[0]):
         sizes += len(samples.forces[0]) * np.log(samples.acc_weight)
     return float(0.5 * end.cost - sizes)
-
-
-def _smoothed(signal: Array, rate_hz: float, cutoff_hz: float) -> Array:
-    """Low-pass without lag, padded by three periods of the cutoff."""
-    return butterworth_lowpass(
-        signal,
-        cutoff_hz=cutoff_hz,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / cutoff_hz,
-    )
 
 
 def _rms(values: Array) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 
 Array = NDArray[np.float64]
 
@@ -97,8 +97,8 @@ def joint_centre_of(
     """
     (a1, k1), (a2, k2) = (
         (
-            _smoothed(acc, rate_hz, cutoff_hz).T,
-            lever_matrices(_smoothed(gyr, rate_hz, cutoff_hz), rate_hz),
+            lowpass_without_lag(acc, cutoff_hz, rate_hz).T,
+            lever_matrices(lowpass_without_lag(gyr, cutoff_hz, rate_hz), rate_hz),
         )
         for acc, gyr in (proximal, distal)
     )
@@ -123,15 +123,3 @@ def joint_centre_of(
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
     scale = max(1.0, size / noise_m_s2)
     return JointCentreFit(r1, r2, size, scale * np.sqrt(np.diag(covariance)))
-
-
-def _smoothed(signal: Array, rate_hz: float, cutoff_hz: float) -> Array:
-    """Low-pass without lag, padded by three periods of the cutoff."""
-    return butterworth_lowpass(
-        signal,
-        cutoff_hz=cutoff_hz,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / cutoff_hz,
-    )

@@ -64,8 +64,9 @@ def estimate_lower_limbs(
         internal rotation positive on both sides, unwrapped; ``orientation`` (segment, component,
         time), ``q_world_from_segment`` of the anatomical frame; ``sensor_orientation``,
         ``q_world_from_sensor``; ``position`` and ``velocity`` (segment, axis, time) of the sensors;
-        ``gyr_bias`` (segment, axis, time) in rad/s; ``refused`` (constraint), the samples at which
-        a constraint did not pass the gate. Attributes ``rate_hz``, ``method``.
+        ``gyr_bias`` (segment, axis, time) in rad/s; ``due`` and ``refused`` (constraint), the
+        samples at which a constraint was there to be used, and those of them at which it did not
+        pass the gate. Attributes ``rate_hz``, ``method``.
 
     Raises
     ------
@@ -80,7 +81,8 @@ def estimate_lower_limbs(
     constraints, active = constraints_of(body, noise, options, rate_hz, zero_velocity, still)
     model = kernel_model(signals, rate_hz, body, noise, options, constraints, active)
     estimate = run_passes(model, start, options, method)
-    return _dataset(body, constraints, recording, method, estimate)
+    due = active.sum(axis=0)
+    return _dataset(body, constraints, due, recording, method, estimate)
 
 
 def _signals(recording: Recording, body: Body) -> Array:
@@ -120,6 +122,7 @@ def _check_flags(flags: Flags, n_rows: int, n_samples: int, name: str) -> None:
 def _dataset(
     body: Body,
     constraints: list[Constraint],
+    due: NDArray[np.int64],
     recording: Recording,
     method: str,
     estimate: Estimate,
@@ -147,6 +150,7 @@ def _dataset(
             "position": (("segment", "axis", "time"), states[:, :, 0:3].transpose(1, 2, 0)),
             "velocity": (("segment", "axis", "time"), states[:, :, 3:6].transpose(1, 2, 0)),
             "gyr_bias": (("segment", "axis", "time"), states[:, :, 10:13].transpose(1, 2, 0)),
+            "due": (("constraint",), due),
             "refused": (("constraint",), estimate.refused),
         },
         coords={

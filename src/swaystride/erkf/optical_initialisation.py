@@ -132,7 +132,8 @@ def mounting_from_rates(
     """Constant mounting that fits the angular velocities of sensors and segments best.
 
     Wahba's problem of the low-passed rates, by singular values; no world frame and no gravity take
-    part, so that drift, heading and bias do not matter.
+    part, so that drift, heading and bias do not matter. For recordings without standing: where there
+    is one, :func:`mounting_from_static` is nearer to the truth (docs/decisions.md).
 
     Parameters
     ----------

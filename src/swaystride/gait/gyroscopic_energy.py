@@ -1,7 +1,7 @@
 """Zero velocity of a running foot whose contacts are known: least gyroscopic energy in stance.
 
 :mod:`swaystride.gait.zero_velocity` finds stances by itself and serves every gait; here the stance
-is given by its initial contact (dissertation, §4.3.4.2; methods §2.1).
+is given by its initial contact (dissertation, §4.3.4.2; methods §3.4).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class EnergyRule:
     stance_share: float
 
 
-#: Dissertation, §4.3.4.2; the share of the stride from methods §2.1.
+#: Dissertation, §4.3.4.2; the share of the stride from methods §3.4.
 PRINTED_ENERGY: Final = EnergyRule(0.02, "start", 0.025, 0.35)
 #: The same without the lead.
 CENTRED_ENERGY: Final = EnergyRule(0.02, "centre", 0.025, 0.35)

@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 from swaystride.errors import RecordingError
 from swaystride.gait.cadence import SHORTEST_STRIDE_S, local_stride_s
 from swaystride.gait.zero_velocity import gyro_energy
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -132,8 +132,10 @@ def initial_contacts(
     _check_complete(acc, "acceleration", place)
     stride = rate_hz * expected_stride_s(gyr, rate_hz, rule, place=place)
     if rate_hz >= rule.filter_from_rate_hz:
-        acc = _lowpassed(acc, rule.cutoff_hz, rate_hz)
-    outstanding = acc if rule.peak == "highest" else acc - _lowpassed(acc, rule.slow_hz, rate_hz)
+        acc = lowpass_without_lag(acc, rule.cutoff_hz, rate_hz)
+    outstanding = (
+        acc if rule.peak == "highest" else acc - lowpass_without_lag(acc, rule.slow_hz, rate_hz)
+    )
     least = rule.least_height_share * float(np.quantile(acc, rule.height_quantile))
     stances, reach = _stances(gyr, rate_hz, stride, rule)
     contacts = _primary_peaks(acc, outstanding, stances, reach, least)
@@ -212,18 +214,6 @@ def _check_complete(signal: Array, name: str, place: str) -> None:
             expected=f"the {name} at every sample",
             found=f"{missing} of {signal.size} missing",
         )
-
-
-def _lowpassed(signal: Array, cutoff_hz: float, rate_hz: float) -> Array:
-    """Zero lag, net 4th order."""
-    return butterworth_lowpass(
-        signal,
-        cutoff_hz=cutoff_hz,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / cutoff_hz,
-    )
 
 
 def _stances(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swaystride.errors import RecordingError
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 
 Array = NDArray[np.float64]
 ToeOffSignal = Literal["pitch_minimum", "resultant_minimum"]
@@ -83,14 +83,7 @@ def toe_offs(
     [42.0, 182.0]
     """
     chosen = pitch_rate_rad_s if rule.signal == "pitch_minimum" else gyr_rad_s
-    rate = butterworth_lowpass(
-        chosen,
-        cutoff_hz=rule.cutoff_hz,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / rule.cutoff_hz,
-    )
+    rate = lowpass_without_lag(chosen, rule.cutoff_hz, rate_hz)
     at = np.asarray(contacts, dtype=np.int64)
     if at.size and (np.any(np.diff(at) <= 0) or at[0] < 0 or at[-1] >= rate.size):
         raise RecordingError(

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import f as f_distribution
 
 from swaystride.errors import RecordingError
+from swaystride.stats.prediction_ellipse import prediction_factor
 
 #: z-score of the printed ellipse, π·z²·√(λ₁λ₂). "z-score for a 95 % confidence level" is read
 #: two-sided (1.960² = 3.842); it encloses 85 % of Gaussian sway, not 95 %, see
@@ -79,29 +79,6 @@ def sway_metrics(ap_deg: ArrayLike, ml_deg: ArrayLike, rate_hz: float) -> dict[s
         "ellipse_area": float(np.pi * ELLIPSE_Z**2 * root_det),
         "ellipse_area_prediction": float(np.pi * prediction_factor(n_samples) * root_det),
     }
-
-
-def prediction_factor(n_samples: int, probability: float = 0.95) -> float:
-    """Squared radius, in standard deviations, of a bivariate prediction ellipse.
-
-    ``2 (n² − 1) / (n (n − 2)) · F(probability; 2, n − 2)``; tends to the χ² quantile with 2 degrees
-    of freedom (5.991 for 95 %) as n grows.
-
-    Parameters
-    ----------
-    n_samples : int
-        Samples that the ellipse was computed from.
-    probability : float
-        Share of new points that it is to hold.
-
-    Examples
-    --------
-    >>> round(prediction_factor(10**7), 3)
-    5.991
-    """
-    n = n_samples
-    quantile = float(f_distribution.ppf(probability, 2, n - 2))
-    return 2.0 * (n**2 - 1) / (n * (n - 2)) * quantile
 
 
 def _checked(

@@ -25,7 +25,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from swaystride.erkf.alignment import level_mounting, standing_vertical, straight_samples
+from swaystride.erkf.alignment import level_mounting
 from swaystride.erkf.body import (
     LOWER_LIMB_JOINTS,
     SEGMENTS,
@@ -50,6 +50,7 @@ from swaystride.gait.zero_velocity import find_zero_velocity
 from swaystride.lower_limb_joints import lower_limb_angles
 from swaystride.recording import make_recording
 from swaystride.rotations import exp_map, quaternion_from_matrix
+from swaystride.signals.segment_alignment import standing_vertical, straight_samples
 from swaystride.units import DEG_PER_RAD, GRAVITY_M_S2
 from swaystride.validation.lower_limb_walk_recording import (
     RATE_HZ,

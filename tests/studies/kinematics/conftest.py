@@ -22,8 +22,8 @@ from swaystride.simulate.kinematics_truth import read_truth
 from swaystride.studies.kinematics import settings
 from swaystride.studies.kinematics.design import read_design
 from swaystride.studies.kinematics.equipment import measured_lengths
-from swaystride.studies.kinematics.estimate_files import load_trial
 from swaystride.studies.kinematics.estimation import estimate_trial
+from swaystride.studies.kinematics.imported_trials import load_trial
 from swaystride.studies.kinematics.importing import import_participant
 from swaystride.studies.kinematics.measures import measure_parameters
 from swaystride.studies.kinematics.participant_measures import participant_measures

@@ -116,9 +116,13 @@ def test_course_claims_fail_with_drift_and_late_convergence(evidence):
 
 
 def test_a_value_that_is_missing_does_not_hold(evidence):
-    missing = evidence.course.assign(strides_to_convergence=np.nan)
     claim = "Errors of the start are overcome within ten strides, in all trials."
-    assert verdicts(replace(evidence, course=missing))[claim] == "no"
+    for unknown in (np.nan, np.inf):
+        missing = evidence.course.assign(strides_to_convergence=unknown)
+        assert verdicts(replace(evidence, course=missing))[claim] == "no"
+        missing = evidence.course.copy()
+        missing.loc[0, "strides_to_convergence"] = unknown
+        assert verdicts(replace(evidence, course=missing))[claim] == "partly"
 
 
 def test_one_more_significant_range_breaks_six_of_seven(evidence):

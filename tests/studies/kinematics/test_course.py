@@ -53,6 +53,12 @@ def test_slow_drift_of_a_whole_trial_is_not_a_slow_start():
     assert convergence(0.01 * TIME, TIME, STARTS, OPTIONS) == 0
 
 
+def test_a_level_that_is_never_kept_for_three_strides_is_no_convergence():
+    """Two strides of three are at the level, which makes it the median: never three in a row."""
+    error = np.where(np.floor(TIME / 0.7 + 1e-9) % 3 == 2, 5.0, 0.0)
+    assert convergence(error, TIME, STARTS, OPTIONS) == np.inf
+
+
 def test_too_few_strides_have_no_convergence():
     assert np.isnan(convergence(TIME * 0, TIME, STARTS[:8], OPTIONS))
 

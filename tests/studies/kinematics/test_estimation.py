@@ -83,6 +83,7 @@ def test_findings_of_the_markers_are_not_told_again(estimated, sound_lab):
     for variant in ("printed", "recommended"):
         checks = [finding.check for finding in estimated(variant)[1]]
         assert not any(check.startswith("marker_gap") for check in checks)
+        assert not {"constraint_refused", "belt_speed_contradicts_markers"} & set(checks)
 
 
 def test_recommended_angles_follow_the_truth_after_one_constant(estimated, known, last_strides):

@@ -16,6 +16,13 @@ def test_a_sound_design(sound_lab):
     assert design.exclusion("P01", "01") == ""
 
 
+def test_somebody_who_is_not_in_the_table(sound_lab):
+    assert sound_lab.design.person("P01")["sex"] in ("F", "M")
+    message = r"^participants.tsv: no such participant; expected P01; found 'P99'$"
+    with pytest.raises(DesignError, match=message):
+        sound_lab.design.person("P99")
+
+
 @pytest.fixture
 def tables(sound_lab, tmp_path):
     """A design of one's own: call with the name of a table and a change of its text."""
@@ -41,6 +48,11 @@ def refiled(row, file):
         return [[*line[:at], file, *line[at + 1 :]] if n == row else line for n, line in enumerate(lines)]  # fmt: skip
 
     return edit
+
+
+def on_another_belt(lines):
+    at = {name: lines[0].index(name) for name in ("kind", "belt_speed_m_s")}
+    return [[*line[: at["belt_speed_m_s"]], "3.5", *line[at["belt_speed_m_s"] + 1 :]] if line[at["kind"]] == "running_markers" else line for line in lines]  # fmt: skip
 
 
 def without(column):
@@ -78,6 +90,7 @@ def with_a_second_trial(lines, **changes):
         ("trials", without("belt_speed_m_s"), "trials.tsv: .*belt_speed_m_s"),
         ("trials", without("kind"), "trials.tsv: .*kind"),
         ("trials", lambda t: [t[0], [*t[1][:2], "walking_imu", *t[1][3:]], *t[2:]], "line 2, column kind.*walking_imu"),
+        ("trials", on_another_belt, r"trials.tsv: lines 2 and 3, column belt_speed_m_s: one run has two speeds of the belt; found 3.88889 and 3.5"),
         ("trials", refiled(1, "P01/P01_01_running.c3d"), "trials.tsv: lines 2, 3: two trials name the same file"),
     ],
 )  # fmt: skip

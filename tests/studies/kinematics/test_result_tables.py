@@ -247,6 +247,14 @@ def test_numbers_of_the_text_by_hand(built):
     assert value["gait_cycles_of_the_representative_trial"] == made.N_STRIDES
     assert value["strides_analysed_more_than"] == 2 * 5 * made.N_STRIDES
     assert value["treadmill_speed"] == pytest.approx(14.0)
+    assert value["gyroscopic_energy_window"] == 0.02
+
+
+def test_a_window_that_is_not_used_is_not_told(frames, course):
+    planned = pd.DataFrame(made.TRIALS, columns=["participant", "trial"])
+    tables_read = (frames[name] for name in ("strides", "agreement", "planar"))
+    text = study4_text(planned, *tables_read, course, None).set_index("quantity")
+    assert np.isnan(text.loc["gyroscopic_energy_window", "value"])
 
 
 def test_people_are_summarised(built):

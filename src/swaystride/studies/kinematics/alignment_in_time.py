@@ -1,7 +1,7 @@
 """Sensors held against markers: each on its own segment, and both on one clock.
 
 The size of the angular rate of a sensor is that of its segment, whatever the mounting. Each sensor
-must move like its own segment, and all with one delay (:mod:`swaystride.signals.synchronisation`).
+must move like its own segment, and all with one delay (:mod:`swaystride.signals.synchronisation`; methods §1.14).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from swaystride.errors import RecordingError
 from swaystride.findings import Finding
 from swaystride.lower_limb_joints import SEGMENTS
 from swaystride.signals.filters import butterworth_lowpass
-from swaystride.signals.synchronisation import match_signals
+from swaystride.signals.synchronisation import Match, match_signals
 
 Array = NDArray[np.float64]
 
@@ -93,6 +93,25 @@ def clock_delay_s(
     match = match_signals(
         np.linalg.norm(own, axis=1), optical, rate_hz, longest_s=rules.longest_delay_s
     )
+    _require_own_segments(match, rules, labels, file)
+    if abs(match.delay_s) <= rules.accepted_delay_s:
+        return 0.0, []
+    finding = Finding(
+        "clocks_out_of_step",
+        "warning",
+        file,
+        "whole recording",
+        f"sensors and markers within {1e3 * rules.accepted_delay_s:.1f} ms",
+        f"sensors {abs(1e3 * match.delay_s):.1f} ms {'late' if match.delay_s > 0 else 'early'}; "
+        "the markers are shifted by it",
+    )
+    return match.delay_s, [finding]
+
+
+def _require_own_segments(
+    match: Match, rules: ClockRules, labels: tuple[str, ...], file: str
+) -> None:
+    """Refuse another movement, a delay that cannot be told from another stride, exchanged sensors."""
     worst = int(np.argmin(match.correlation))
     if match.correlation[worst] < rules.least_correlation:
         raise RecordingError(
@@ -123,18 +142,6 @@ def clock_delay_s(
                 for j in exchanged
             ),
         )
-    if abs(match.delay_s) <= rules.accepted_delay_s:
-        return 0.0, []
-    finding = Finding(
-        "clocks_out_of_step",
-        "warning",
-        file,
-        "whole recording",
-        f"sensors and markers within {1e3 * rules.accepted_delay_s:.1f} ms",
-        f"sensors {abs(1e3 * match.delay_s):.1f} ms {'late' if match.delay_s > 0 else 'early'}; "
-        "the markers are shifted by it",
-    )
-    return match.delay_s, [finding]
 
 
 def shifted(position_m: Array, delay_s: float, rate_hz: float, n_samples: int) -> Array:

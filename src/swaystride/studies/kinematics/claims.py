@@ -8,10 +8,9 @@ from typing import Final
 
 import pandas as pd
 
-from swaystride.studies.kinematics.plan import POOR_OPTICAL_ANGLES
+from swaystride.studies.kinematics.plan import POOR_OPTICAL_ANGLES, SAGITTAL_ANGLES
 from swaystride.studies.kinematics.summaries import TRIAL_KEYS
 from swaystride.studies.kinematics.table_options import TableOptions
-from swaystride.studies.kinematics.truth_tables import SAGITTAL_ANGLES
 
 #: Printed error of the stride length, percent: mean and SD over trials (Table 4.7).
 PRINTED_LENGTH_ERROR_PCT: Final = (8.5, 1.1)
@@ -87,8 +86,9 @@ def _integration_drifts_more(e: Evidence) -> list[bool]:
 
 
 def _converges(e: Evidence) -> list[bool]:
-    slowest = e.course.groupby(list(TRIAL_KEYS), sort=False)["strides_to_convergence"].max()
-    return _each(slowest, e.options.convergence_strides)
+    """Every angle of both sides; a trial in which one cannot be judged does not hold."""
+    trials = e.course.groupby(list(TRIAL_KEYS), sort=False)["strides_to_convergence"]
+    return _each(trials.agg(lambda own: own.max(skipna=False)), e.options.convergence_strides)
 
 
 def _at_least(table: str, column: str, limit: float) -> Callable[[Evidence], list[bool]]:

@@ -154,7 +154,7 @@ def drift(error_deg: Array, time_s: Array, window_s: float) -> float:
 
 
 def convergence(error_deg: Array, time_s: Array, starts_s: Array, options: TableOptions) -> float:
-    """Strides until the mean difference of a stride stays near its settled level.
+    """Strides until the median difference of a stride stays near its settled level.
 
     The level and its scatter are those of the strides after ``convergence_strides``, up to three
     times as many: later ones may drift.
@@ -170,7 +170,8 @@ def convergence(error_deg: Array, time_s: Array, starts_s: Array, options: Table
     Returns
     -------
     float
-        Strides before the first three in a row that are near it; NaN with too few strides.
+        Strides before the first three in a row that are near it; infinity without such three, NaN
+        with too few strides.
     """
     said = options.convergence_strides
     last = min(starts_s.size, _EARLY * said + 1)
@@ -185,7 +186,7 @@ def convergence(error_deg: Array, time_s: Array, starts_s: Array, options: Table
     known = np.flatnonzero(np.isfinite(levels))
     near = np.abs(levels[known] - level) <= band
     stays = np.convolve(near, np.ones(_IN_A_ROW), mode="valid") == _IN_A_ROW
-    return float(known[stays.argmax()]) if stays.any() else float("nan")
+    return float(known[stays.argmax()]) if stays.any() else float("inf")
 
 
 def stride_levels(error_deg: Array, time_s: Array, starts_s: Array) -> Array:

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from swaystride.presentation.figure_style import OKABE_ITO, new_figure
 from swaystride.studies.kinematics.figure_words import (
@@ -24,11 +23,10 @@ from swaystride.studies.kinematics.figure_words import (
     SOURCE_LABELS,
 )
 from swaystride.studies.kinematics.perturbation import UNSHIFTED
-from swaystride.studies.kinematics.plan import ANGLE_NAMES, SIDES, SOURCES
+from swaystride.studies.kinematics.plan import ANGLE_NAMES, SAGITTAL_ANGLES, SIDES, SOURCES
 
 Array = NDArray[np.float64]
 
-_SAGITTAL: Final = ("hip_flexion", "knee_flexion", "ankle_dorsiflexion")
 _JOINTS: Final = ("hip", "knee", "ankle")
 _PHASE_TICKS: Final = (0, 25, 50, 75, 100)
 
@@ -42,9 +40,9 @@ def figure_4_7(curves: pd.DataFrame) -> Figure:
         Of one trial: ``source``, ``side``, ``angle``, ``phase_pct``, ``mean_deg``.
     """
     fig = new_figure("double", height_mm=100)
-    grid = fig.subplots(len(SIDES), len(_SAGITTAL), sharex=True, sharey="col")
+    grid = fig.subplots(len(SIDES), len(SAGITTAL_ANGLES), sharex=True, sharey="col")
     for row, side in zip(grid, SIDES, strict=True):
-        for axes, angle in zip(row, _SAGITTAL, strict=True):
+        for axes, angle in zip(row, SAGITTAL_ANGLES, strict=True):
             phase = _curve(curves, "erkf", side, angle)[0]
             means = {source: _curve(curves, source, side, angle)[1] for source in SOURCES}
             for source, mean in means.items():
@@ -111,7 +109,8 @@ def stance_peak(mean_deg: Array) -> int:
         Its sample; the largest of the first two fifths if the curve has no peak there.
     """
     early = 2 * mean_deg.size // 5
-    peaks, _ = find_peaks(mean_deg[:early])
+    slope = np.diff(mean_deg[:early])
+    peaks = 1 + np.flatnonzero((slope[:-1] > 0.0) & (slope[1:] <= 0.0))
     return int(peaks[0]) if peaks.size else int(np.nanargmax(mean_deg[:early]))
 
 

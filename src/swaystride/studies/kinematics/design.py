@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import pandas as pd
 
@@ -62,6 +62,28 @@ class KinematicsDesign:
 
     participants: pd.DataFrame
     trials: pd.DataFrame
+
+    def person(self, participant: str) -> pd.Series[Any]:
+        """Row of one participant.
+
+        Parameters
+        ----------
+        participant : str
+
+        Raises
+        ------
+        DesignError
+            If nobody has this name.
+        """
+        own = self.participants[self.participants["participant"] == participant]
+        if own.empty:
+            raise DesignError(
+                "no such participant",
+                file="participants.tsv",
+                expected=", ".join(map(str, self.participants["participant"])),
+                found=repr(participant),
+            )
+        return own.iloc[0]
 
     def trial_names(self, participant: str) -> list[str]:
         """Trials of a participant, in the order of the file.
@@ -125,7 +147,8 @@ def read_design(folder: Path) -> KinematicsDesign:
     Raises
     ------
     DesignError
-        If a table is malformed, a participant is unknown or has no trials, or a file is named twice.
+        If a table is malformed, a participant is unknown or has no trials, a file is named twice, or both
+        recordings of a run tell another speed of the belt.
     """
     people_file, trials_file = folder / "participants.tsv", folder / "trials.tsv"
     participants = read_study_table(people_file, PARTICIPANT_COLUMNS, unique=["participant"])
@@ -142,6 +165,16 @@ def read_design(folder: Path) -> KinematicsDesign:
     idle = sorted(set(participants["participant"]) - set(trials["participant"]))
     if idle:
         raise DesignError("participant has no trials", file=people_file, found=", ".join(idle))
+    running = trials[trials["kind"].str.startswith("running")]
+    speeds = running.groupby(["participant", "trial"], sort=False)["belt_speed_m_s"]
+    differs = running[speeds.transform("nunique") > 1]
+    if len(differs):
+        raise DesignError(
+            "one run has two speeds of the belt",
+            file=trials_file,
+            place=f"lines {differs.index[0] + 2} and {differs.index[1] + 2}, column belt_speed_m_s",
+            found=" and ".join(f"{speed:g}" for speed in differs["belt_speed_m_s"].iloc[:2]),
+        )
     # one standing recording may serve several trials
     used = trials[(trials["exclude"] == "") & trials["kind"].str.startswith("running")]
     shared = used["file"].duplicated(keep=False)

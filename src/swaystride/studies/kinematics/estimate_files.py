@@ -8,8 +8,7 @@ from typing import Final
 import xarray as xr
 
 from swaystride.errors import RecordingError
-from swaystride.recording import list_recordings, load_recording
-from swaystride.studies.kinematics.estimation import TrialRecordings
+from swaystride.recording import list_recordings
 
 #: Variables that are stored as they are; the others as float32.
 _EXACT: Final = ("foot_position_m", "zero_velocity")
@@ -23,28 +22,6 @@ def usable_trials(path: Path) -> list[str]:
     path : Path
     """
     return list_recordings(path)
-
-
-def load_trial(path: Path, trial: str) -> TrialRecordings:
-    """Imported recordings of one trial.
-
-    Parameters
-    ----------
-    path : Path
-        From :func:`swaystride.studies.kinematics.importing.import_participant`.
-    trial : str
-        Its name.
-
-    Returns
-    -------
-    TrialRecordings
-    """
-    return TrialRecordings(
-        running=load_recording(path, f"{trial}/running"),
-        markers=load_recording(path, f"{trial}/markers"),
-        standing=load_recording(path, f"{trial}/standing"),
-        standing_markers=load_recording(path, f"{trial}/standing_markers"),
-    )
 
 
 def start_estimates(path: Path) -> None:

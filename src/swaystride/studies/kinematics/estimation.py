@@ -22,11 +22,12 @@ from swaystride.gait.initial_contact import InitialContactRule, initial_contacts
 from swaystride.gait.integration import integrated_orientation
 from swaystride.gait.zero_velocity import find_zero_velocity
 from swaystride.lower_limb_joints import SEGMENTS, Side, lower_limb_angles
-from swaystride.marker_recording import MarkerRecording
 from swaystride.mocap.anthropometrics import Anthropometrics
 from swaystride.recording import AXES, Recording, make_recording
 from swaystride.rotations import matrix_from_quaternion
 from swaystride.studies.kinematics.equipment import Markers
+from swaystride.studies.kinematics.estimate_findings import belt_speed, refused_constraints
+from swaystride.studies.kinematics.imported_trials import TrialRecordings
 from swaystride.studies.kinematics.initialisation import FEET, Initialisation, Known, initialise
 from swaystride.studies.kinematics.optics import (
     OpticalMethod,
@@ -53,7 +54,7 @@ class FilterMethod:
         recommended foot trajectory.
     contacts : InitialContactRule
     energy : EnergyRule
-        Both for the first of them.
+        Both are read by the first of these rules only.
     initialisation : Initialisation
     centres : CentreSearch
     start : StartUncertainty
@@ -70,16 +71,6 @@ class FilterMethod:
     start: StartUncertainty
     noise: NoiseSet
     options: FilterOptions
-
-
-@dataclass(frozen=True, eq=False)
-class TrialRecordings:
-    """Imported recordings of one trial (:mod:`swaystride.studies.kinematics.importing`)."""
-
-    running: Recording
-    markers: MarkerRecording
-    standing: Recording
-    standing_markers: MarkerRecording
 
 
 def estimate_trial(
@@ -112,7 +103,8 @@ def estimate_trial(
         ``planar_angle_deg`` (trio, time); times are those of the vendor's file. Attributes ``rate_hz``, ``belt_speed_m_s``,
         ``first_usable_s`` (first sample in the vendor's file).
     findings : list of Finding
-        Of the optical side, and constraints that were refused.
+        Of the optical side, constraints that were refused, and a belt speed that the markers
+        contradict.
     """
     optical = optical_trial(
         trial.markers, calibrated_person(trial.standing_markers, person, optical_method), markers
@@ -158,7 +150,7 @@ def estimate_trial(
     told = set(findings_from_json(trial.markers.attrs["findings"]))
     seen = findings_from_json(optical.angles.attrs["findings"])
     new = [finding for finding in seen if finding not in told]
-    return estimates, [*new, *_refused(filtered)]
+    return estimates, [*new, *refused_constraints(filtered), *belt_speed(estimates)]
 
 
 def zero_velocity(acc: Array, gyr: Array, rate_hz: float, method: FilterMethod) -> Flags:
@@ -265,6 +257,23 @@ def _padded(values: Array, before: int) -> Array:
     return np.concatenate([np.full((*values.shape[:-1], before), np.nan), values], axis=-1)
 
 
+def _integrated_beside(from_markers: Array, gyr: Array, rate_hz: float, known: Known) -> Array:
+    """Angles of the gyroscopes alone, in degrees, within half a turn of those of the markers.
+
+    A difference of orientations is no more, however often the integration went round.
+    """
+    integrated = table_angles(integrated_angles(gyr[:, :, known.sample :], rate_hz, known))
+    beside = np.nan_to_num(from_markers[:, :, known.sample :])
+    return np.asarray(beside + (integrated - beside + 180.0) % 360.0 - 180.0)
+
+
+def _on_the_belt(position_m: Array, belt_way_m: Array) -> Array:
+    """Positions (n, points, 3) of the laboratory in the frame of the belt, (points, 3, n)."""
+    way = np.zeros((len(belt_way_m), 1, 3))
+    way[:, 0, 0] = belt_way_m
+    return np.asarray((position_m + way).transpose(1, 2, 0))
+
+
 def _beside_each_other(
     optical: OpticalTrial,
     filtered: xr.Dataset,
@@ -276,19 +285,14 @@ def _beside_each_other(
     belt_speed_m_s: float,
 ) -> xr.Dataset:
     """Estimates of both sources with names."""
-    n, rate_hz = acc.shape[2], optical.poses.rate_hz
+    rate_hz = optical.poses.rate_hz
     order = ("time", "joint", "angle")
     from_markers = table_angles(optical.angles["joint_angle"].transpose(*order).to_numpy())
     from_filter = table_angles(filtered["joint_angle"].transpose(*order).to_numpy())
     spread = filtered["joint_angle_sd"].transpose(*order).to_numpy()
     rows = [[spread[(slice(None), *places(a, side))] for a in JOINT_ANGLES] for side in SIDES]
-    drift = table_angles(integrated_angles(gyr[:, :, known.sample :], rate_hz, known))
-    # a difference of orientations is at most half a turn, however often the integration went round
-    beside = np.nan_to_num(from_markers[:, :, known.sample :])
-    drift = beside + (drift - beside + 180.0) % 360.0 - 180.0
-    way = np.zeros((n, 1, 3))
-    way[:, 0, 0] = belt_speed_m_s * time_s
-    seen = (optical.poses.sensor_position_m[:, FEET] + way).transpose(1, 2, 0)
+    drift = _integrated_beside(from_markers, gyr, rate_hz, known)
+    seen = _on_the_belt(optical.poses.sensor_position_m[:, FEET], belt_speed_m_s * time_s)
     walked = filtered["position"].to_numpy()[list(FEET)]
     pitch = [known.body.r_anatomical_from_sensor[row][2] @ gyr[row] for row in FEET]
     by_source = ("source", "side", "angle", "time")
@@ -329,24 +333,3 @@ def _beside_each_other(
     }
     attributes = {"rate_hz": rate_hz, "belt_speed_m_s": belt_speed_m_s}
     return xr.Dataset(data, coords=coords, attrs=attributes)
-
-
-def _refused(filtered: xr.Dataset) -> list[Finding]:
-    """Constraints that the gate refused at more than a percent of the samples."""
-    n = filtered.sizes["time"]
-    findings = []
-    for name, count in zip(
-        filtered["constraint"].to_numpy(), filtered["refused"].to_numpy(), strict=True
-    ):
-        if count > 0.01 * n:
-            findings.append(
-                Finding(
-                    "constraint_refused",
-                    "warning",
-                    "",
-                    str(name),
-                    "innovations within the gate",
-                    f"refused at {100.0 * count / n:.1f} % of the samples",
-                )
-            )
-    return findings

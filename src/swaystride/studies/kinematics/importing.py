@@ -66,12 +66,12 @@ def import_participant(
 
     Raises
     ------
+    DesignError
+        If nobody has this name.
     RecordingError
         If a trial contradicts its labels or the measures of the person; nothing is written then.
     """
-    people = design.participants
-    own = people[people["participant"] == participant].iloc[0]
-    person = measured_lengths(own, rules.markers)
+    person = measured_lengths(design.person(participant), rules.markers)
     person.check(f"participants.tsv: {participant}")
     groups: dict[str, xr.Dataset] = {}
     findings: list[dict[str, str]] = []

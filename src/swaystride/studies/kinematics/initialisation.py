@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from swaystride.erkf.alignment import level_mounting, standing_vertical
+from swaystride.erkf.alignment import level_mounting
 from swaystride.erkf.body import Body, lower_limb_body
 from swaystride.erkf.imu_initialisation import (
     DISTAL_SHANK_CENTRES,
@@ -25,6 +25,7 @@ from swaystride.erkf.optical_initialisation import (
 )
 from swaystride.erkf.start import Start, StartUncertainty
 from swaystride.lower_limb_joints import SEGMENTS
+from swaystride.signals.segment_alignment import standing_vertical
 from swaystride.studies.kinematics.optics import OpticalTrial
 
 Array = NDArray[np.float64]
@@ -183,7 +184,7 @@ def _from_sensors(
     search: CentreSearch,
     uncertainty: StartUncertainty,
 ) -> Known:
-    """Without markers (methods §1.12-1.13)."""
+    """Without markers (methods §1.7, §1.13)."""
     mounting = level_mounting(
         standing_acc,
         gyr,

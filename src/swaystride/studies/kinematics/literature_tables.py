@@ -9,7 +9,7 @@ from typing import Final
 import pandas as pd
 
 from swaystride.presentation.number_format import format_number
-from swaystride.studies.kinematics.plan import SIDES
+from swaystride.studies.kinematics.plan import SAGITTAL_ANGLES, SIDES
 
 #: Metrics of our rows: name in the table, unit, column of the agreement, decimals.
 _METRICS: Final = (
@@ -17,7 +17,6 @@ _METRICS: Final = (
     ("rmsd", "deg", "rmsd_deg", 1),
     ("rmsd_no_constant", "deg", "rmsd_trial_deg", 1),
 )
-_SAGITTAL: Final = ("hip_flexion", "knee_flexion", "ankle_dorsiflexion")
 #: In the printed order, of those that the source compares.
 _OTHERS: Final = ("hip_adduction", "hip_rotation", "knee_adduction")
 
@@ -59,7 +58,7 @@ def table_4_9(
     for side in SIDES:
         for metric, unit, column, decimals in _METRICS:
             row = _own(agreement, duration_min) | {"metric": metric, "unit": unit, "side": side}
-            for angle in _SAGITTAL:
+            for angle in SAGITTAL_ANGLES:
                 own = _chosen(agreement, angle, side)[column]
                 row[f"{angle}_mean"] = format_number(float(own.mean()), decimals, "plain")
                 row[f"{angle}_sd"] = format_number(float(own.std()), decimals, "plain")

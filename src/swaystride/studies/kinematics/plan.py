@@ -34,6 +34,8 @@ JOINT_ANGLES: Final = (
 )
 ANGLE_NAMES: Final = tuple(angle.name for angle in JOINT_ANGLES)
 
+#: Angles of the sagittal plane; all others are frontal or transverse.
+SAGITTAL_ANGLES: Final = ("hip_flexion", "knee_flexion", "ankle_dorsiflexion")
 #: Angles that markers measure well enough to compare with, in the order of Tables 4.3 and 4.5.
 RELIABLE_ANGLES: Final = (
     "hip_flexion",

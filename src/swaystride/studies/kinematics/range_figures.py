@@ -104,7 +104,7 @@ def _range_handles() -> list[Line2D]:
 
 
 def figure_truth(table: pd.DataFrame) -> Figure:
-    """Errors of markers and filter against the truth, after one constant per trial.
+    """Errors of markers and filter against the truth, as they are and after one constant per trial.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ def study4_text(
     agreement: pd.DataFrame,
     planar: pd.DataFrame,
     course: pd.DataFrame,
-    energy_window_s: float,
+    energy_window_s: float | None,
 ) -> pd.DataFrame:
     """The quantities of ``study4_text.csv``, each by a stated rule.
 
@@ -34,8 +34,8 @@ def study4_text(
         ``participant``, ``trial``, ``trio``, ``mean_deg``, ``sd_deg``.
     course : DataFrame
         From :func:`swaystride.studies.kinematics.course.trial_course`, with participant and trial.
-    energy_window_s : float
-        Window of the gyroscopic energy.
+    energy_window_s : float or None
+        Window of the gyroscopic energy; None where another rule finds midstance.
 
     Returns
     -------
@@ -66,7 +66,8 @@ def study4_text(
          "mean over trials"),
         ("minimum_midstance_samples_per_stride", course["midstance_samples_per_stride"].min(), nan,
          "", "zero-velocity samples of a counted stride, mean of a foot's trial; smallest"),
-        ("gyroscopic_energy_window", energy_window_s, nan, "s", "as configured"),
+        ("gyroscopic_energy_window", nan if energy_window_s is None else energy_window_s, nan, "s",
+         "as configured; missing where another rule finds midstance"),
     ]  # fmt: skip
     table = pd.DataFrame(rows, columns=["quantity", "value", "sd", "unit", "rule"])
     return table.astype({"value": float, "sd": float})

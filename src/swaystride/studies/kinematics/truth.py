@@ -64,7 +64,7 @@ def true_angles_deg(motion: RunningMotion, time_s: Array) -> Array:
 def angle_errors(
     estimates: xr.Dataset, strides: pd.DataFrame, truth: RecordingTruth
 ) -> pd.DataFrame:
-    """Errors of every angle over the strides that count.
+    """Errors of every angle from the first stride that counts to the last.
 
     Parameters
     ----------

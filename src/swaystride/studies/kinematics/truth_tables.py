@@ -6,10 +6,8 @@ from typing import Final
 
 import pandas as pd
 
-from swaystride.studies.kinematics.plan import RANGE_ANGLES, SIDES, SOURCES
+from swaystride.studies.kinematics.plan import RANGE_ANGLES, SAGITTAL_ANGLES, SIDES, SOURCES
 
-#: Angles of the sagittal plane; all others are frontal or transverse.
-SAGITTAL_ANGLES: Final = ("hip_flexion", "knee_flexion", "ankle_dorsiflexion")
 _STRIDE_MEASURES: Final = ("stride_length_m", "stride_width_m")
 
 
