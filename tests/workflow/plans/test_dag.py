@@ -1,4 +1,7 @@
-"""The DAG, by dry runs: expected jobs, variants, readable refusals."""
+"""The DAG, by dry runs: expected jobs, variants, readable refusals.
+
+A folder of its own, so that another process runs these while the demo cohort is built.
+"""
 
 import pytest
 
