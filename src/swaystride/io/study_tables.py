@@ -112,6 +112,37 @@ def read_study_table(
     return table
 
 
+def check_participants(
+    participants: pd.DataFrame, trials: pd.DataFrame, people_file: Path, trials_file: Path
+) -> None:
+    """Everybody who has a trial is listed, and everybody who is listed has one.
+
+    Parameters
+    ----------
+    participants, trials : DataFrame
+        From :func:`read_study_table`, each with the column ``participant``.
+    people_file, trials_file : Path
+        Where they come from, for the errors.
+
+    Raises
+    ------
+    DesignError
+        With the first line whose participant is unknown, or the participants without trials.
+    """
+    unknown = ~trials["participant"].isin(participants["participant"])
+    if unknown.any():
+        row = int(unknown.to_numpy().argmax())
+        raise DesignError(
+            "participant is not in participants.tsv",
+            file=trials_file,
+            place=f"{_line(row)}, column participant",
+            found=repr(trials.loc[row, "participant"]),
+        )
+    idle = sorted(set(participants["participant"]) - set(trials["participant"]))
+    if idle:
+        raise DesignError("participant has no trials", file=people_file, found=", ".join(idle))
+
+
 def write_study_table(table: pd.DataFrame, path: Path | str) -> None:
     """Write a study table as a lab would keep it: tab-separated, no index, empty for missing.
 

@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from swaystride.errors import RecordingError
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 
 Array = NDArray[np.float64]
 
@@ -166,13 +166,8 @@ def belt_speed(toe_m: Array, rate_hz: float) -> float:
 
 def _velocity(markers: Array, rate_hz: float, belt_m_s: float, rule: ContactRule) -> Array:
     """Forward (over the ground) and upward velocity of each marker, (2, n_markers, n_frames)."""
-    smooth = butterworth_lowpass(
-        _bridged(markers[..., [0, 2]].transpose(2, 0, 1)),
-        cutoff_hz=rule.cutoff_hz,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / rule.cutoff_hz,
+    smooth = lowpass_without_lag(
+        _bridged(markers[..., [0, 2]].transpose(2, 0, 1)), rule.cutoff_hz, rate_hz
     )
     velocity = np.gradient(smooth, axis=-1) * rate_hz
     velocity[0] += belt_m_s

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from swaystride.mocap.marker_gaps import PRINTED_LIMITS, fill_gaps
 from swaystride.mocap.marker_set import SIDES, points
-from swaystride.signals.filters import butterworth_lowpass
+from swaystride.signals.filters import lowpass_without_lag
 from swaystride.validation.running_optical import OpticalRun, optical_runs
 from swaystride.validation.running_optical_recording import CLUSTERS, FOOT_MARKERS
 
@@ -94,14 +94,7 @@ def foot_signals(
     dict of str to dict of str to list of ndarray, shape (n,)
         By event, then by rule.
     """
-    smooth = butterworth_lowpass(
-        np.stack([heel_m.T, toe_m.T, sacrum_m.T]),
-        cutoff_hz=_CUTOFF_HZ,
-        rate_hz=rate_hz,
-        order=2,
-        direction="zero_lag",
-        pad_s=3.0 / _CUTOFF_HZ,
-    )
+    smooth = lowpass_without_lag(np.stack([heel_m.T, toe_m.T, sacrum_m.T]), _CUTOFF_HZ, rate_hz)
     heel, toe, sacrum = smooth
     speed = np.gradient(smooth[:2, 2], axis=-1)
     rise = np.gradient(speed, axis=-1)

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from swaystride.errors import DesignError
-from swaystride.io.study_tables import Column, read_study_table
+from swaystride.io.study_tables import Column, check_participants, read_study_table
 
 TrialNumberCoding = Literal["continue", "reset"]
 
@@ -70,20 +70,7 @@ def read_design(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
     participants_file, trials_file = folder / "participants.tsv", folder / "trials.tsv"
     participants = read_study_table(participants_file, PARTICIPANT_COLUMNS, unique=["participant"])
     trials = read_study_table(trials_file, TRIAL_COLUMNS, unique=["participant", "session_trial"])
-    unknown = ~trials["participant"].isin(participants["participant"])
-    if unknown.any():
-        row = int(unknown.to_numpy().argmax())
-        raise DesignError(
-            "participant is not in participants.tsv",
-            file=trials_file,
-            place=f"line {row + 2}, column participant",
-            found=repr(trials.loc[row, "participant"]),
-        )
-    idle = sorted(set(participants["participant"]) - set(trials["participant"]))
-    if idle:
-        raise DesignError(
-            "participant has no trials", file=participants_file, found=", ".join(idle)
-        )
+    check_participants(participants, trials, participants_file, trials_file)
     contradiction = (trials["feedback_shown"] != "none") & (
         (trials["feedback_shown"] != trials["feedback"]) | (trials["phase"] == "baseline")
     )

@@ -14,7 +14,7 @@ import pandas as pd
 
 from swaystride.errors import DesignError
 from swaystride.findings import FINDING_COLUMNS, Finding
-from swaystride.io.study_tables import Column, read_study_table
+from swaystride.io.study_tables import Column, check_participants, read_study_table
 
 Foot = Literal["left", "right"]
 Imu = Literal["imu_1", "imu_2"]
@@ -79,18 +79,7 @@ def read_design(folder: Path) -> ImuDesign:
     people_file, trials_file = folder / "participants.tsv", folder / "trials.tsv"
     participants = read_study_table(people_file, PARTICIPANT_COLUMNS, unique=["participant"])
     trials = read_study_table(trials_file, TRIAL_COLUMNS, unique=KEYS)
-    unknown = ~trials["participant"].isin(participants["participant"])
-    if unknown.any():
-        row = int(unknown.to_numpy().argmax())
-        raise DesignError(
-            "participant is not in participants.tsv",
-            file=trials_file,
-            place=f"line {row + 2}, column participant",
-            found=repr(trials.loc[row, "participant"]),
-        )
-    idle = sorted(set(participants["participant"]) - set(trials["participant"]))
-    if idle:
-        raise DesignError("participant has no trials", file=people_file, found=", ".join(idle))
+    check_participants(participants, trials, people_file, trials_file)
     _check_distances(trials, trials_file)
     _check_files(trials, trials_file)
     return ImuDesign(participants, with_recording_names(trials))

@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from swaystride.presentation.participant_flow import flow_line
 from swaystride.studies.imu_design.design import FEET, IMUS, KEYS, ImuDesign
 
 
@@ -36,25 +37,12 @@ def study_flow(
     left_out = pd.concat([exclusions["reason"], measured.loc[measured["reason"] != "", "reason"]])
     reasons = {str(reason): int(n) for reason, n in left_out.value_counts().sort_index().items()}
     return [
-        _unit("participants", people, {"no usable trial": people - kept_people}),
-        _unit("trials", len(trials), {"no usable recording": len(trials) - len(kept_trials)}),
-        _unit(
+        flow_line("participants", people, {"no usable trial": people - kept_people}),
+        flow_line("trials", len(trials), {"no usable recording": len(trials) - len(kept_trials)}),
+        flow_line(
             "recordings",
             len(design.trials[list(KEYS)]),
             reasons,
             planned=len(trials) * len(FEET) * len(IMUS),
         ),
     ]
-
-
-def _unit(
-    name: str, recorded: int, excluded: dict[str, int], *, planned: int | None = None
-) -> dict[str, Any]:
-    """One line of the flow; reasons without a case are left out."""
-    return {
-        "unit": name,
-        "planned": planned,
-        "recorded": recorded,
-        "excluded": [{"reason": reason, "count": n} for reason, n in excluded.items() if n],
-        "analysed": recorded - sum(excluded.values()),
-    }

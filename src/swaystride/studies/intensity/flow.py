@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from swaystride.presentation.participant_flow import flow_line
 from swaystride.studies.intensity.design import SELF, TRIALS_PER_EXERCISE, IntensityDesign
 from swaystride.studies.intensity.observations import expected_ratings
 
@@ -34,9 +35,9 @@ def study_flow(design: IntensityDesign, exclusions: pd.DataFrame) -> list[dict[s
     reasons = exclusions["reason"].value_counts(sort=False).sort_index()
     people, raters = len(design.participants), len(design.raters)
     return [
-        _unit("participants", people, {"no rating by a therapist": people - len(rated)}),
-        _unit("therapists", raters, {"rated nobody": raters - active}),
-        _unit(
+        flow_line("participants", people, {"no rating by a therapist": people - len(rated)}),
+        flow_line("therapists", raters, {"rated nobody": raters - active}),
+        flow_line(
             "trials",
             len(design.trials),
             {str(reason): int(count) for reason, count in reasons.items()},
@@ -58,17 +59,4 @@ def _rating_unit(name: str, expected: pd.DataFrame) -> dict[str, Any]:
     """Ratings of one kind: expected, with a row, empty, given."""
     recorded = int((expected["status"] != "no row").sum())
     empty = int((expected["status"] == "empty").sum())
-    return _unit(name, recorded, {"missing rating": empty}, planned=len(expected))
-
-
-def _unit(
-    name: str, recorded: int, excluded: dict[str, int], *, planned: int | None = None
-) -> dict[str, Any]:
-    """One line of the flow; reasons without a case are left out."""
-    return {
-        "unit": name,
-        "planned": planned,
-        "recorded": recorded,
-        "excluded": [{"reason": reason, "count": n} for reason, n in excluded.items() if n],
-        "analysed": recorded - sum(excluded.values()),
-    }
+    return flow_line(name, recorded, {"missing rating": empty}, planned=len(expected))

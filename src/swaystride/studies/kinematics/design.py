@@ -14,7 +14,7 @@ from typing import Any, Final
 import pandas as pd
 
 from swaystride.errors import DesignError
-from swaystride.io.study_tables import Column, read_study_table
+from swaystride.io.study_tables import Column, check_participants, read_study_table
 
 #: Kinds of recordings of a trial.
 KINDS: Final = ("running_imu", "running_markers", "standing_imu", "standing_markers")
@@ -153,18 +153,7 @@ def read_design(folder: Path) -> KinematicsDesign:
     people_file, trials_file = folder / "participants.tsv", folder / "trials.tsv"
     participants = read_study_table(people_file, PARTICIPANT_COLUMNS, unique=["participant"])
     trials = read_study_table(trials_file, TRIAL_COLUMNS, unique=["participant", "trial", "kind"])
-    unknown = ~trials["participant"].isin(participants["participant"])
-    if unknown.any():
-        row = int(unknown.to_numpy().argmax())
-        raise DesignError(
-            "participant is not in participants.tsv",
-            file=trials_file,
-            place=f"line {row + 2}, column participant",
-            found=repr(trials.loc[row, "participant"]),
-        )
-    idle = sorted(set(participants["participant"]) - set(trials["participant"]))
-    if idle:
-        raise DesignError("participant has no trials", file=people_file, found=", ".join(idle))
+    check_participants(participants, trials, people_file, trials_file)
     running = trials[trials["kind"].str.startswith("running")]
     speeds = running.groupby(["participant", "trial"], sort=False)["belt_speed_m_s"]
     differs = running[speeds.transform("nunique") > 1]

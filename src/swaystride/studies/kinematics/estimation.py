@@ -243,13 +243,16 @@ def table_angles(joint_angles_rad: Array) -> Array:
     ndarray, shape (2, 9, n)
         Degrees; every series within 180° of nil on average.
     """
-    rows = [
-        [joint_angles_rad[(slice(None), *places(a, side))] for a in JOINT_ANGLES] for side in SIDES
-    ]
-    degrees = np.array(rows) * DEG_PER_RAD
+    degrees = _by_side_and_name(joint_angles_rad) * DEG_PER_RAD
     with np.errstate(invalid="ignore"):
         middle = np.nanmedian(degrees, axis=2, keepdims=True)
     return np.asarray(degrees - 360.0 * np.round(middle / 360.0))
+
+
+def _by_side_and_name(by_joint: Array) -> Array:
+    """Values (n, 6, 3) of the joints in the order of the tables, (2, 9, n)."""
+    rows = [[by_joint[(slice(None), *places(a, side))] for a in JOINT_ANGLES] for side in SIDES]
+    return np.array(rows)
 
 
 def _padded(values: Array, before: int) -> Array:
@@ -289,8 +292,7 @@ def _beside_each_other(
     order = ("time", "joint", "angle")
     from_markers = table_angles(optical.angles["joint_angle"].transpose(*order).to_numpy())
     from_filter = table_angles(filtered["joint_angle"].transpose(*order).to_numpy())
-    spread = filtered["joint_angle_sd"].transpose(*order).to_numpy()
-    rows = [[spread[(slice(None), *places(a, side))] for a in JOINT_ANGLES] for side in SIDES]
+    spread = _by_side_and_name(filtered["joint_angle_sd"].transpose(*order).to_numpy())
     drift = _integrated_beside(from_markers, gyr, rate_hz, known)
     seen = _on_the_belt(optical.poses.sensor_position_m[:, FEET], belt_speed_m_s * time_s)
     walked = filtered["position"].to_numpy()[list(FEET)]
@@ -305,7 +307,7 @@ def _beside_each_other(
         ),
         "angle_sd_deg": (
             by_source[1:],
-            _padded(np.array(rows) * DEG_PER_RAD, known.sample).astype(float32),
+            _padded(spread * DEG_PER_RAD, known.sample).astype(float32),
         ),
         "integrated_deg": (by_source[1:], _padded(drift, known.sample).astype(float32)),
         "foot_position_m": (

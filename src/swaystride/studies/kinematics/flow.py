@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from swaystride.presentation.participant_flow import flow_line
 from swaystride.studies.kinematics.summaries import TRIAL_KEYS
 
 
@@ -48,9 +49,9 @@ def study_flow(
     n_strides = len(strides.drop_duplicates([*keys, "side", "stride"]))
     idle = {"no usable trial": people - used["participant"].nunique()}
     return [
-        _unit("participants", people, idle),
-        _unit("trials", len(listed), reasons, planned=people * per_person),
-        _unit("strides", n_strides, {}),
+        flow_line("participants", people, idle),
+        flow_line("trials", len(listed), reasons, planned=people * per_person),
+        flow_line("strides", n_strides, {}),
     ]
 
 
@@ -76,16 +77,3 @@ def named_findings(findings: pd.DataFrame) -> pd.DataFrame:
     once = findings.drop_duplicates(ignore_index=True)
     trial = once["participant"] + ", trial " + once["trial"]
     return once.assign(file=once["file"].where(once["file"] != "", trial))
-
-
-def _unit(
-    name: str, recorded: int, excluded: dict[str, int], *, planned: int | None = None
-) -> dict[str, Any]:
-    """One line of the flow; reasons without a case are left out."""
-    return {
-        "unit": name,
-        "planned": planned,
-        "recorded": recorded,
-        "excluded": [{"reason": reason, "count": n} for reason, n in excluded.items() if n],
-        "analysed": recorded - sum(excluded.values()),
-    }

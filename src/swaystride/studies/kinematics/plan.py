@@ -60,6 +60,8 @@ RANGE_ANGLES: Final = (
 #: Angles that markers of the conventional set measure badly (D§4.4.1, Tables 4.4 and 4.8).
 POOR_OPTICAL_ANGLES: Final = ("ankle_inversion", "knee_rotation", "ankle_rotation")
 
+#: Measures of a stride on the ground, in the order of Table 4.7, and the features that hold them.
+STRIDE_MEASURES: Final = {"stride_length": "stride_length_m", "stride_width": "stride_width_m"}
 #: Peaks and the angle at contact, in the order of Table 4.6.
 FEATURES: Final = (
     "hip_peak_flexion",

@@ -17,6 +17,7 @@ from swaystride.studies.kinematics.plan import (
     RELIABLE_ANGLES,
     SIDES,
     SOURCES,
+    STRIDE_MEASURES,
 )
 from swaystride.studies.kinematics.summaries import TRIAL_KEYS, summary_table, trial_features
 from swaystride.studies.kinematics.table_options import TableOptions
@@ -42,8 +43,6 @@ ALTERNATIVE_COLUMNS: Final = {
     "rmsd_stride_alt_deg": "rmsd_stride_deg",
     "nrmsd_stride_alt_pct": "nrmsd_stride_pct",
 }
-#: Rows of Table 4.7 and the features that fill them.
-STRIDE_MEASURES: Final = {"stride_length": "stride_length_m", "stride_width": "stride_width_m"}
 #: What the print leaves open or has in other words: how accurate markers are (Table 4.8).
 OPTIC_EXPECTATIONS: Final = {
     "hip_flexion": "accurate without offset",

@@ -15,12 +15,10 @@ from swaystride.simulate.kinematics_truth import RecordingTruth
 from swaystride.simulate.running_motion import RunningMotion
 from swaystride.studies.kinematics.estimation import table_angles
 from swaystride.studies.kinematics.initialisation import FEET
-from swaystride.studies.kinematics.plan import ANGLE_NAMES, SIDES, SOURCES
+from swaystride.studies.kinematics.plan import ANGLE_NAMES, SIDES, SOURCES, STRIDE_MEASURES
 
 Array = NDArray[np.float64]
 
-#: Measures of the strides that have a truth.
-STRIDE_MEASURES: Final = ("stride_length_m", "stride_width_m")
 #: Columns of the results after participant and trial.
 ANGLE_ERROR_COLUMNS: Final = (
     "source",
@@ -137,13 +135,13 @@ def stride_errors(strides: pd.DataFrame, truth: RecordingTruth) -> pd.DataFrame:
     """
     tables = []
     for side, known in true_strides(truth).items():
-        own = strides[(strides["side"] == side) & strides["feature"].isin(STRIDE_MEASURES)]
+        own = strides[(strides["side"] == side) & strides["feature"].isin(STRIDE_MEASURES.values())]
         contact = own["initial_contact_s"].to_numpy(dtype=np.float64)
         at = _nearest(known["touch_s"].to_numpy(), contact)
         far = np.abs(known["touch_s"].to_numpy()[at] - contact) > _SAME_CONTACT_S
-        columns = [known[measure].to_numpy() for measure in STRIDE_MEASURES]
-        is_width = own["feature"].to_numpy() == STRIDE_MEASURES[1]
-        value = np.where(is_width, columns[1][at], columns[0][at])
+        length, width = (known[feature].to_numpy() for feature in STRIDE_MEASURES.values())
+        is_width = own["feature"].to_numpy() == STRIDE_MEASURES["stride_width"]
+        value = np.where(is_width, width[at], length[at])
         tables.append(
             own[["side", "stride", "source"]].assign(
                 measure=own["feature"], estimate=own["value"], truth=np.where(far, np.nan, value)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import pandas as pd
 
-from swaystride.studies.kinematics.plan import RANGE_ANGLES, SAGITTAL_ANGLES, SIDES, SOURCES
-
-_STRIDE_MEASURES: Final = ("stride_length_m", "stride_width_m")
+from swaystride.studies.kinematics.plan import (
+    RANGE_ANGLES,
+    SAGITTAL_ANGLES,
+    SIDES,
+    SOURCES,
+    STRIDE_MEASURES,
+)
 
 
 def truth_angles(truth: pd.DataFrame) -> pd.DataFrame:
@@ -106,7 +108,7 @@ def truth_strides(strides: pd.DataFrame) -> pd.DataFrame:
     frame = strides.assign(error=strides["estimate"] - strides["truth"])
     frame = frame[frame["error"].notna()].assign(squared=lambda table: table["error"] ** 2)
     rows = []
-    for measure in _STRIDE_MEASURES:
+    for measure in STRIDE_MEASURES.values():
         for side in SIDES:
             for source in SOURCES:
                 own = frame[
