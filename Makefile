@@ -1,7 +1,7 @@
 # swaystride: `make` sets up the environment and builds every table and figure.
 #
 #   make              everything at published scale     make demo       the same in small
-#   make feedback     one study (or intensity, imu_design, kinematics)
+#   make feedback     one study (or intensity, imu_design, kinematics, experience)
 #   make variants     every variant of every study
 #   make test         tests                             make lint       style, types, workflow
 #   make validation   public real recordings            make recovery   many simulated cohorts
@@ -23,7 +23,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 SNAKEMAKE := snakemake --cores $(CORES) --keep-going --rerun-incomplete --quiet rules host \
 	$(if $(COHORT),--config cohort=$(COHORT))
 
-.PHONY: all setup demo feedback intensity imu_design kinematics variants validation benchmark benchmark-models benchmark-feet benchmark-running-body peers recovery dry-run test lint format lock clean
+.PHONY: all setup demo feedback intensity imu_design kinematics experience variants validation benchmark benchmark-models benchmark-feet benchmark-running-body peers recovery dry-run test lint format lock clean
 
 all: setup
 	@$(SNAKEMAKE) -- all
@@ -42,6 +42,9 @@ imu_design: setup
 
 kinematics: setup
 	@$(SNAKEMAKE) -- kinematics
+
+experience: setup
+	@$(SNAKEMAKE) -- experience
 
 variants: setup
 	@$(SNAKEMAKE) -- variants

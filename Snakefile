@@ -10,7 +10,7 @@ sys.path[:0] = [
     str(Path(workflow.basedir) / "workflow"),
 ]
 
-from jobs import code, commit, prepare_environment
+from jobs import code, commit, look_once_a_second, prepare_environment
 from project import Project
 
 
@@ -19,6 +19,7 @@ configfile: "config/config.yaml"
 
 project = Project(config)
 prepare_environment()
+look_once_a_second()
 
 
 wildcard_constraints:

@@ -29,7 +29,9 @@ def main() -> None:
     parser = script_parser(__doc__)
     parser.add_argument("--cores", type=int, default=2)
     parser.add_argument(
-        "--studies", nargs="+", default=["feedback", "intensity", "imu_design", "kinematics"]
+        "--studies",
+        nargs="+",
+        default=["feedback", "intensity", "imu_design", "kinematics", "experience"],
     )
     arguments = parser.parse_args()
     for study in arguments.studies:

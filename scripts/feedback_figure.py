@@ -8,11 +8,9 @@ import pandas as pd
 from swaystride.command_line import json_file, run_script, script_parser
 from swaystride.configuration import from_mapping
 from swaystride.presentation.figure_style import figure_style, save_figure
-from swaystride.recording import load_recording
 from swaystride.studies.feedback import figures
 from swaystride.studies.feedback.model_results import collect
 from swaystride.studies.feedback.plan import ModelPlan
-from swaystride.sway.trial_measures import MeasurementMethod, filtered_sway
 
 
 def main() -> None:
@@ -33,6 +31,10 @@ def main() -> None:
     own = observed[observed["participant"] == exemplar]
 
     def displays() -> figures.Figure:
+        # only this figure reads signals, and what filters them takes longest to load
+        from swaystride.recording import load_recording
+        from swaystride.sway.trial_measures import MeasurementMethod, filtered_sway
+
         method = from_mapping(
             MeasurementMethod, arguments.parameters["measurement"], place="analysis.measurement"
         )

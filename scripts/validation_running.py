@@ -1,4 +1,4 @@
-"""Lay the simulated runner over real ones, and our optical angles over the authors' own."""
+"""Lay the simulated runner over real ones; our angles, events and variability over others' own."""
 
 from pathlib import Path
 
@@ -7,6 +7,7 @@ from swaystride.presentation.figure_style import figure_style, save_figure
 from swaystride.validation.running_body import compare_runners
 from swaystride.validation.running_checks import joint_table, runner_checks, timing_table
 from swaystride.validation.running_figures import figure_feet, figure_joints
+from swaystride.validation.running_measure_checks import measure_report
 from swaystride.validation.running_optical_checks import optical_report
 from swaystride.validation.running_real import FULL_BODY, MARKERS
 from swaystride.validation.summary import summary_frame
@@ -20,21 +21,25 @@ def main() -> None:
     parser.add_argument("--checks", type=Path, required=True, help="the rest goes beside it")
     arguments = parser.parse_args()
     comparison = compare_runners(arguments.real_data, arguments.dataset)
-    optical = optical_report(arguments.real_data) if arguments.dataset == MARKERS else None
+    makers = (optical_report, measure_report) if arguments.dataset == MARKERS else ()
+    reports = [make(arguments.real_data) for make in makers]
     folder = arguments.checks.parent
     # Real and simulated curves share the figures, and the legend says which is which.
     with figure_style():
         save_figure(figure_joints(comparison), folder / "joints", simulated=False)
         save_figure(figure_feet(comparison), folder / "feet", simulated=False)
-        for name, draw in (optical.figures if optical else {}).items():
-            save_figure(draw(), folder / name, simulated=False)
-    summary = summary_frame(runner_checks(comparison) + (optical.checks if optical else []))
+        for report in reports:
+            for name, draw in report.figures.items():
+                save_figure(draw(), folder / name, simulated=False)
+    found = [check for report in reports for check in report.checks]
+    summary = summary_frame(runner_checks(comparison) + found)
     tables = {
         "checks": summary,
         "trials": timing_table(comparison),
         "joints": joint_table(comparison),
-        **(optical.tables if optical else {}),
     }
+    for report in reports:
+        tables |= report.tables
     for name, table in tables.items():
         path = folder / f"{name}.csv"
         table.to_csv(path, index=False, float_format="%.12g", lineterminator="\n")

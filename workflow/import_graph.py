@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +12,7 @@ SOURCE = REPOSITORY / "src"
 PACKAGE = "swaystride"
 
 
+@cache
 def module_file(module: str) -> Path | None:
     """File that defines a module of the package, or None if there is no such module."""
     base = SOURCE.joinpath(*module.split("."))
@@ -30,7 +32,7 @@ def module_name(file: Path) -> str:
 def imported_modules(file: Path) -> tuple[str, ...]:
     """Modules of the package that a file imports, in order of their names."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in _statements(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
@@ -41,19 +43,30 @@ def imported_modules(file: Path) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
+def _statements(tree: ast.Module) -> Iterator[ast.AST]:
+    """All statements of a module; expressions, nine of ten nodes, hold no import."""
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            waiting += getattr(node, block, ())
+
+
 @cache
 def named_data(file: Path) -> tuple[Path, ...]:
     """Data files beside or below a module that its text names."""
     if file.parent == SOURCE / PACKAGE:
         return ()
     text = file.read_text(encoding="utf-8")
-    return tuple(
-        sorted(
-            data
-            for data in file.parent.rglob("*.*")
-            if data.suffix in {".json", ".csv", ".html", ".css"} and data.name in text
-        )
-    )
+    return tuple(data for data in _data_below(file.parent) if data.name in text)
+
+
+@cache
+def _data_below(folder: Path) -> tuple[Path, ...]:
+    """All data files of a folder of the package and of those below it, sorted."""
+    kinds = {".json", ".csv", ".html", ".css"}
+    return tuple(sorted(data for data in folder.rglob("*.*") if data.suffix in kinds))
 
 
 def dependencies(file: Path) -> list[Path]:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from threading import Timer
+from typing import Any
 
 from import_graph import REPOSITORY, SOURCE, dependencies, module_file
 
@@ -46,6 +48,28 @@ def commit() -> str:
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return f"{head}+changes" if changed else head
+
+
+def look_once_a_second() -> None:
+    """Let Snakemake look at its queue once a second, and whenever a job ends.
+
+    Snakemake 9.27 sets a timer at every look, because a limit of jobs per second may have passed;
+    and every job that ends adds a look. So the looks become as many a second as jobs have ended, each
+    asks for the size of all inputs of all jobs that are ready, and a build of a hundred jobs keeps a
+    third of a core busy with it. One timer at a time says the same.
+    """
+    from snakemake.scheduling.job_scheduler import JobScheduler
+
+    def set_timer(scheduler: Any, delay: int) -> None:
+        pending = getattr(scheduler, "_pending_look", None)
+        if pending is None or not pending.is_alive():
+            scheduler._pending_look = Timer(delay, scheduler._open_jobs.release)
+            scheduler._pending_look.daemon = True
+            scheduler._pending_look.start()
+
+    # the method is private and may be gone in another version, and with it the fault
+    if hasattr(JobScheduler, "_schedule_reevalutation"):
+        JobScheduler._schedule_reevalutation = set_timer
 
 
 def prepare_environment() -> None:

@@ -5,7 +5,6 @@ Everything here is known when the Snakefile is parsed, so that a dry run shows t
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 from collections.abc import Mapping
@@ -14,6 +13,7 @@ from typing import Any
 
 from import_graph import REPOSITORY
 from study_parameters import BASE_VARIANT, SCHEMAS, STAGES, load_study, resolve, sections_json
+from study_units import PASSING_RECORDINGS, files_of, lab_rows, simulated_units, unit_of
 from swaystride.configuration import Tree, iter_parameters, load_yaml, plain_values, validate
 from swaystride.errors import ConfigurationError
 
@@ -91,53 +91,25 @@ class Project:
         return "|".join(self.simulated_cohorts) or "(?!)"
 
     def units(self, study: str, cohort: str) -> list[str]:
-        """Units of work of a study: from the configuration, or from the lab's trials.tsv.
+        """Units of work of a study: from the configuration, or from the lab's table.
 
         Raises
         ------
         ConfigurationError
-            If a real cohort has no trials.tsv, or one without participants.
+            If a real cohort has no table of its recordings, or one without rows.
         """
         if self.is_simulated(cohort):
             tree = self.parameter_tree(study, cohort, BASE_VARIANT)
-            n_units = plain_values(tree)["simulation"]["cohort"]["protocol"]["n_participants"]
-            return [f"P{number:02d}" for number in range(1, n_units + 1)]
-        return list(dict.fromkeys(row["participant"] for row in self._trials(study, cohort)))
+            return simulated_units(study, plain_values(tree)["simulation"]["cohort"]["protocol"])
+        rows = lab_rows(Path(self.raw_folder(cohort, study)), study)
+        return list(dict.fromkeys(unit_of(study, row) for row in rows))
 
     def existing_files(self, study: str, cohort: str, unit: str) -> list[str]:
         """Recordings of a unit that are there; what is missing is the import's to report."""
         folder = Path(self.raw_folder(cohort, study))
-        files = [
-            folder / row["file"]
-            for row in self._trials(study, cohort)
-            if row["participant"] == unit
-        ]
+        rows = [row for row in lab_rows(folder, study) if unit_of(study, row) == unit]
+        files = [folder / name for row in rows for name in files_of(study, row)]
         return [str(file) for file in files if file.is_file()]
-
-    def _trials(self, study: str, cohort: str) -> list[dict[str, str]]:
-        """Rows of trials.tsv of a real cohort, as text."""
-        path = Path(self.raw_folder(cohort, study)) / "trials.tsv"
-        if not path.is_file():
-            raise ConfigurationError(
-                "the cohort has no trials.tsv",
-                file=path,
-                expected="the table that docs/your-data.md describes",
-            )
-        try:
-            with path.open(encoding="utf-8-sig", newline="") as file:
-                rows = [
-                    {key: value or "" for key, value in row.items() if key}
-                    for row in csv.DictReader(file, delimiter="\t")
-                ]
-        except UnicodeDecodeError:
-            raise ConfigurationError("not readable as text", file=path, expected="UTF-8") from None
-        if not rows or not {"participant", "file"} <= set(rows[0]):
-            raise ConfigurationError(
-                "trials.tsv cannot be used",
-                file=path,
-                expected="tab-separated columns participant and file, and at least one row",
-            )
-        return rows
 
     # -- variants and parameters -------------------------------------------------------------
     def variants(self, study: str) -> list[str]:
@@ -206,7 +178,8 @@ class Project:
                 if suffix == "svg":
                     files.append(f"{stem}.pdf")
             files += [f"{folder}/quality/exclusions.csv", f"{variant}/report.html"]
-            files += [f"{folder}/recordings/{unit}.nc" for unit in self.units(study, cohort)]
+            if study not in PASSING_RECORDINGS:
+                files += [f"{folder}/recordings/{unit}.nc" for unit in self.units(study, cohort)]
         return files
 
     def simulated_flag(self, wildcards: Any) -> str:

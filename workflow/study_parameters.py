@@ -29,6 +29,8 @@ STAGE_OF_SECTION = {
     "analysis.erkf": "metrics",
     "analysis.zero_velocity": "metrics",
     "analysis.measures": "metrics",
+    "analysis.events": "metrics",
+    "analysis.trajectory": "metrics",
     "analysis.perturbation": "metrics",
     "analysis.model": "models",
 }

@@ -28,11 +28,11 @@ Tree = dict[str, Any]
 T = TypeVar("T")
 
 
-class _UniqueKeyLoader(yaml.SafeLoader):
-    """YAML loader that refuses a key that stands twice in one mapping."""
+class _UniqueKeyLoader(yaml.CSafeLoader):
+    """YAML loader that refuses a key that stands twice in one mapping; ten times as fast in C."""
 
 
-def _mapping_without_duplicates(loader: yaml.SafeLoader, node: yaml.MappingNode) -> Tree:
+def _mapping_without_duplicates(loader: yaml.CSafeLoader, node: yaml.MappingNode) -> Tree:
     seen: set[str] = set()
     for key_node, _ in node.value:
         if key_node.tag != "tag:yaml.org,2002:str":

@@ -290,3 +290,19 @@ def test_every_printed_table_is_readable(file):
     frame = read_table(file)
     assert list(frame.columns) == rows[0]
     assert len(frame) == len(rows) - 1
+
+
+def test_people_may_see_the_same_numbers_arranged_otherwise(tmp_path):
+    frame = pd.DataFrame({"row": ["a", "a"], "column": ["x", "y"], "value": [0.25, 0.5]})
+    wide = pd.DataFrame({"row": ["a"], "x": [0.25], "y": [0.5]})
+    write_table(
+        frame,
+        tmp_path / "table",
+        caption="Values.",
+        formats={"value": 2},
+        simulated=False,
+        shown=wide,
+        shown_formats={"x": 1, "y": 2},
+    )
+    assert len(read_table(tmp_path / "table.csv")) == 2
+    assert "| a | 0.2 | 0.50 |" in (tmp_path / "table.md").read_text(encoding="utf-8")

@@ -133,7 +133,7 @@ def test_listing_and_claims():
     view = claims_view(claims)
     assert [cell.text for cell in view.head[0]] == ["Claim", "Holds for", "Reproduced"]
     assert [cell.mark for cell in view.groups[0].rows[0]] == ["", "", "borderline"]
-    with pytest.raises(DesignError, match=r"expected yes, partly or no; found maybe"):
+    with pytest.raises(DesignError, match=r"expected yes, partly, no or not testable; found maybe"):
         claims_view(claims.assign(reproduced="maybe"))
     with pytest.raises(DesignError, match=r"columns of a claims table; expected 'verdict'"):
         claims_view(claims, verdict="verdict")

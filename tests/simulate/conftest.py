@@ -6,7 +6,12 @@ import pytest
 
 from import_graph import REPOSITORY
 from swaystride.configuration import load_yaml, plain_values
-from swaystride.simulate import imu_design_parameters, kinematics_parameters
+from swaystride.simulate import (
+    experience_parameters,
+    imu_design_parameters,
+    kinematics_parameters,
+)
+from swaystride.simulate.experience_parameters import ExperienceCohort
 from swaystride.simulate.feedback_parameters import FeedbackCohort, cohort_from_config
 from swaystride.simulate.imu_design_parameters import ImuDesignCohort
 from swaystride.simulate.kinematics_parameters import KinematicsCohort
@@ -41,6 +46,13 @@ def treadmill_runners() -> KinematicsCohort:
     """The published cohort of the kinematics study."""
     tree = load_yaml(REPOSITORY / "config" / "studies" / "kinematics.yaml")
     return kinematics_parameters.cohort_from_config(plain_values(tree["simulation"]))
+
+
+@pytest.fixture(scope="session")
+def path_runners() -> ExperienceCohort:
+    """The published cohort of the experience study."""
+    tree = load_yaml(REPOSITORY / "config" / "studies" / "experience.yaml")
+    return experience_parameters.cohort_from_config(plain_values(tree["simulation"]))
 
 
 @pytest.fixture(scope="session")

@@ -17,9 +17,10 @@ from swaystride.simulate.kinematics_cohort import (
     trial_names,
     true_measures,
 )
-from swaystride.simulate.kinematics_parameters import RunnerScatter, cohort_from_config
+from swaystride.simulate.kinematics_parameters import cohort_from_config
 from swaystride.simulate.kinematics_recordings import lost_marker
 from swaystride.simulate.running_manner import RunnerManner
+from swaystride.simulate.running_scatter import RunnerScatter
 
 CONFIG = REPOSITORY / "config" / "studies" / "kinematics.yaml"
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import firwin, upfirdn
 
 from swaystride.errors import ConfigurationError
 from swaystride.simulate.sampling import anti_alias, filter_reach, quantise
@@ -24,6 +25,17 @@ def test_anti_alias_filter_stops_what_would_fold(frequency):
     t = np.arange(3000) / RATE
     out = anti_alias(np.sin(2 * np.pi * frequency * t), rate_hz=RATE, output_rate_hz=100.0)
     assert np.abs(out).max() < 2e-3
+
+
+@pytest.mark.parametrize("n", [81, 82, 145, 146, 400, 1001])
+@pytest.mark.parametrize("bandwidth_hz", [None, 30.0])
+def test_outputs_in_groups_are_those_of_one_long_filter(n, bandwidth_hz):
+    signal = np.random.default_rng(n).standard_normal((2, 3, n))
+    out = anti_alias(signal, rate_hz=2000.0, output_rate_hz=500.0, bandwidth_hz=bandwidth_hz)
+    taps = firwin(81, bandwidth_hz or 250.0, window=("kaiser", 5.65), fs=2000.0)
+    filtered = upfirdn(taps, signal, down=4, axis=-1)
+    expected = filtered[..., 20 : 20 + (n - 81) // 4 + 1]
+    np.testing.assert_allclose(out, expected, rtol=1e-12, atol=1e-13)
 
 
 def test_rates_without_an_integer_ratio_are_refused():

@@ -14,6 +14,8 @@ from import_graph import REPOSITORY
 
 #: What a run of the workflow needs; nothing generated.
 PARTS = ("Snakefile", "config", "workflow", "scripts", "src", "data/published", "requirements.txt")
+#: Folders of compiled code.
+COMPILED = "__pycache__"
 
 
 @dataclass
@@ -66,14 +68,23 @@ class Sandbox:
 
 
 def checkout(root):
-    """Copy the repository, generated files aside but for compiled code, which takes minutes to make."""
+    """Copy the repository without what it generated.
+
+    Compiled code takes minutes to make; the checkouts share that of the repository, so that what one
+    process has compiled is there for all. It belongs to sources of one time and size, which a copy
+    keeps: an edited module has its own.
+    """
     for part in PARTS:
         source, target = REPOSITORY / part, root / part
         target.parent.mkdir(parents=True, exist_ok=True)
         if source.is_dir():
-            shutil.copytree(source, target)
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns(COMPILED))
         else:
             shutil.copy2(source, target)
+    for module in (REPOSITORY / "src").rglob("__init__.py"):
+        shared = module.parent / COMPILED
+        shared.mkdir(exist_ok=True)
+        (root / shared.relative_to(REPOSITORY)).symlink_to(shared)
     return Sandbox(root)
 
 

@@ -107,17 +107,14 @@ def test_provenance_lists_every_result_with_its_hash(demo):
     assert provenance["seed"] == 1
 
 
-def test_a_rerun_does_nothing(demo):
-    assert demo.planned(*DEMO) == {}
-
-
 def test_one_core_gives_the_same_bytes(demo, sandbox):
     """One study with all its pages, of the others what their participants leave."""
     measured = (
         "feedback",
         f"{RESULTS}/intensity/printed/metrics/P01.parquet",
-        f"{RESULTS}/imu_design/printed/models/effects.parquet",
+        f"{RESULTS}/imu_design/printed/metrics/P01.parquet",
         f"{RESULTS}/kinematics/printed/strides/P02.parquet",
+        f"{RESULTS}/experience/printed/runs/P02_01.parquet",
     )
     process = sandbox.snakemake("--quiet", "rules", *DEMO[:-1], *measured, cores=1)
     assert process.returncode == 0, process.stdout
@@ -127,37 +124,55 @@ def test_one_core_gives_the_same_bytes(demo, sandbox):
         assert built.items() <= demo.bytes_of(folder).items()
 
 
-def edited(sandbox, file):
-    """Plan after one more comment in a file; the file is restored."""
-    path = sandbox.root / file
-    text = path.read_text(encoding="utf-8")
+def edited(sandbox, *files):
+    """Plan after one more comment in each file; the files are restored."""
+    texts = {sandbox.root / file: (sandbox.root / file).read_text("utf-8") for file in files}
     try:
-        path.write_text(text + "\n# an edit\n", encoding="utf-8")
+        for path, text in texts.items():
+            path.write_text(text + "\n# an edit\n", encoding="utf-8")
         return sandbox.planned(*DEMO)
     finally:
-        path.write_text(text, encoding="utf-8")
+        for path, text in texts.items():
+            path.write_text(text, encoding="utf-8")
+
+
+def test_a_rerun_does_nothing(demo):
+    """Nor after an edit of what the cohort does not need."""
+    assert edited(demo, "src/swaystride/validation/figures.py") == {}
 
 
 def test_an_edit_reruns_the_dependents_only(demo):
-    """The first stage that reruns is the first that imports the module."""
-    claims = edited(demo, "src/swaystride/studies/feedback/claims.py")
-    assert claims["feedback_table"] == 7
-    assert not {"feedback_simulate", "feedback_import", "feedback_metrics"} & set(claims)
-    assert "feedback_model" not in claims
-    assert not [rule for rule in claims if rule.startswith("intensity")]
+    """The first stage that reruns is the first that imports the module.
 
-    design = edited(demo, "src/swaystride/studies/intensity/design.py")
-    assert design["intensity_import"] == 4
-    assert "intensity_simulate" not in design
-    assert not [rule for rule in design if rule.startswith("feedback")]
+    A plan takes seconds: modules of two studies are edited at once where neither study needs the
+    other's.
+    """
+    claims_and_clipping = edited(
+        demo,
+        "src/swaystride/studies/feedback/claims.py",
+        "src/swaystride/signals/saturation.py",
+    )
+    assert claims_and_clipping["feedback_table"] == 7
+    assert not {"feedback_simulate", "feedback_import", "feedback_metrics"} & set(
+        claims_and_clipping
+    )
+    assert "feedback_model" not in claims_and_clipping
+    assert claims_and_clipping["imu_design_metrics"] == 2
+    assert not {"imu_design_simulate", "imu_design_import"} & set(claims_and_clipping)
+    assert not [rule for rule in claims_and_clipping if rule.startswith("intensity")]
 
-    sentences = edited(demo, "src/swaystride/studies/imu_design/recommendation.py")
-    assert sentences["imu_design_table"] == 13
-    assert not {"imu_design_metrics", "imu_design_models", "imu_design_figure"} & set(sentences)
-
-    clipping = edited(demo, "src/swaystride/signals/saturation.py")
-    assert clipping["imu_design_metrics"] == 2
-    assert not {"imu_design_simulate", "imu_design_import"} & set(clipping)
+    design_and_sentences = edited(
+        demo,
+        "src/swaystride/studies/intensity/design.py",
+        "src/swaystride/studies/imu_design/recommendation.py",
+    )
+    assert design_and_sentences["intensity_import"] == 4
+    assert "intensity_simulate" not in design_and_sentences
+    assert design_and_sentences["imu_design_table"] == 13
+    assert not {"imu_design_metrics", "imu_design_models", "imu_design_figure"} & set(
+        design_and_sentences
+    )
+    assert not [rule for rule in design_and_sentences if rule.startswith("feedback")]
 
     fusion = edited(demo, "src/swaystride/signals/orientation.py")
     assert fusion["feedback_metrics"] == 6
@@ -168,8 +183,6 @@ def test_an_edit_reruns_the_dependents_only(demo):
     assert readers["feedback_import"] == 6
     assert readers["intensity_import"] == 4
     assert "feedback_simulate" not in readers
-
-    assert edited(demo, "src/swaystride/validation/figures.py") == {}
 
 
 def test_a_changed_parameter_reruns_the_stages_that_use_it(demo):

@@ -11,6 +11,8 @@ rule parameter_sections:
         "results/{cohort}/{study}/{variant}/parameters/{sections}.json",
     log:
         "logs/{cohort}/{study}/{variant}/parameters_{sections}.log",
+    # a moment's work, for which no recording should wait
+    priority: 100
     conda:
         "../envs/swaystride.yaml"
     params:

@@ -86,7 +86,7 @@ def foot_trajectory(
     for first, piece_acc, piece_gyr in signals:
         where = f"from {first / rate_hz:.2f} s" if len(signals) > 1 else ""
         found = find_zero_velocity(piece_acc, piece_gyr, rate_hz, method)
-        check_gravity(piece_acc, found.flags)
+        check_gravity(piece_acc, found.flags, has_rest=len(found.rests) > 0)
         if not found.flags.any():
             none = "no still instant, no trajectory"
             findings.append(

@@ -59,7 +59,7 @@ def read_study_table(
     columns : mapping of str to Column
         Declaration; further columns are kept as text.
     unique : sequence of str
-        Columns that together name a row; no two rows may agree in them.
+        Columns that together name a row; no two rows may agree in them. With none, rows may repeat.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def read_study_table(
         if name not in raw:
             table[name] = ""
         table[name] = _checked_column(table[name], name, column, path)
-    repeated = table.duplicated(list(unique))
+    repeated = table.duplicated(list(unique)) if unique else pd.Series(dtype=bool)
     if repeated.any():
         row = int(repeated.to_numpy().argmax())
         key = ", ".join(f"{name} {raw[name].iloc[row]!s}" for name in unique)

@@ -108,6 +108,8 @@ def write_table(
     formats: Mapping[str, str | int],
     simulated: bool,
     labels: Mapping[str, str] | None = None,
+    shown: pd.DataFrame | None = None,
+    shown_formats: Mapping[str, str | int] | None = None,
 ) -> list[Path]:
     """Write ``<stem>.csv``, ``.md``, ``.tex`` and ``.html`` renderings of one frame.
 
@@ -130,6 +132,11 @@ def write_table(
     labels : mapping of str to str, optional
         Words for column names and for the values of text columns, used in the renderings for
         people only.
+    shown : pandas.DataFrame, optional
+        What the renderings for people show, where the print arranges the same numbers otherwise;
+        the CSV always holds `frame`.
+    shown_formats : mapping of str to str or int, optional
+        Formats of the columns of `shown`.
 
     Returns
     -------
@@ -159,18 +166,21 @@ def write_table(
     header = [str(column) for column in frame.columns]
     _require_unique(header, file=None)
     form = column_formats(frame, formats)
+    people = frame if shown is None else shown
+    page_form = form if shown is None else column_formats(people, shown_formats or {})
     words = labels or {}
+    names = [str(column) for column in people.columns]
     rows = [
         [
-            words.get(cell, cell) if form[name].kind == "text" else cell
-            for name, cell in zip(header, row, strict=True)
+            words.get(cell, cell) if page_form[name].kind == "text" else cell
+            for name, cell in zip(names, row, strict=True)
         ]
-        for row in cells_of(frame, form, "page")
+        for row in cells_of(people, page_form, "page")
     ]
     table = TextTable(
-        header=[words.get(name, name) for name in header],
+        header=[words.get(name, name) for name in names],
         rows=rows,
-        numeric=[form[name].is_numeric for name in header],
+        numeric=[page_form[name].is_numeric for name in names],
         caption=caption,
         notes=notes,
         simulated=simulated,

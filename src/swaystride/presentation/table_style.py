@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,11 +21,20 @@ class TableStyle:
     notes : tuple of str
     formats : mapping of str to str or int
         See :func:`swaystride.presentation.number_format.parse_format`.
+    arrange : callable, optional
+        Arranges the table for people; the CSV keeps its rows.
+    arranged_formats : mapping of str to str or int
+        Formats of the columns of the arranged table.
+    labels : mapping of str to str
+        Words for columns, in the renderings for people.
     """
 
     caption: str
     notes: tuple[str, ...] = ()
     formats: Mapping[str, str | int] = field(default_factory=dict)
+    arrange: Callable[[pd.DataFrame], pd.DataFrame] | None = None
+    arranged_formats: Mapping[str, str | int] = field(default_factory=dict)
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     def write(self, frame: pd.DataFrame, output: Path, *, simulated: bool) -> None:
         """Write a table in all renderings.
@@ -46,4 +55,7 @@ class TableStyle:
             notes=self.notes,
             formats=self.formats,
             simulated=simulated,
+            labels=self.labels,
+            shown=None if self.arrange is None else self.arrange(frame),
+            shown_formats=self.arranged_formats,
         )

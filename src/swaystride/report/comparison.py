@@ -14,7 +14,7 @@ from statistics import NormalDist
 from typing import Any, Literal
 
 import pandas as pd
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from swaystride.errors import ConfigurationError
 from swaystride.report.attainability import Unattainable, attainability, require_used
@@ -299,7 +299,7 @@ def standard_error(row: Mapping[str, Any], value: Value) -> float:
     low, high = (cell_number(row.get(name), name) for name in value.ci)
     tail = 0.5 + 0.5 * value.confidence
     df = cell_number(row.get(value.df), value.df) if value.df else math.inf
-    quantile = NormalDist().inv_cdf(tail) if math.isinf(df) else float(student_t.ppf(tail, df))
+    quantile = NormalDist().inv_cdf(tail) if math.isinf(df) else float(stdtrit(df, tail))
     return 0.5 * (high - low) / quantile
 
 

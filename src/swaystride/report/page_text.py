@@ -47,7 +47,7 @@ class ItemText:
     unattainable : tuple of Unattainable
         Printed values that cannot be had.
     verdict : str
-        Column of a claims table that says yes, partly or no.
+        Column of a claims table that says yes, partly, no or not testable.
     formats, labels : mapping
         Column formats of a listing; words for identifiers.
     notes : tuple of str

@@ -16,7 +16,7 @@ from swaystride.presentation.table_files import cells_of, column_formats
 MARKS = {"agrees": "●", "borderline": "○", "differs": "◆"}
 """Symbols of agreement; shape and filling differ, so that colour is not needed."""
 
-CLAIM_AGREEMENT = {"yes": "agrees", "partly": "borderline", "no": "differs"}
+CLAIM_AGREEMENT = {"yes": "agrees", "partly": "borderline", "no": "differs", "not testable": ""}
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def claims_view(
     frame : pandas.DataFrame
         All columns are shown, in their order; the first holds the claims.
     verdict : str
-        Column that says ``yes``, ``partly`` or ``no``.
+        Column that says ``yes``, ``partly``, ``no`` or ``not testable``.
     labels : mapping of str to str, optional
         Words for columns; others are shown with spaces for underscores.
 
@@ -176,7 +176,7 @@ def claims_view(
     if unknown:
         raise DesignError(
             f"column {verdict!r} of a claims table",
-            expected="yes, partly or no",
+            expected="yes, partly, no or not testable",
             found=", ".join(unknown),
         )
     texts = frame.astype(object).where(frame.notna(), "").astype(str)

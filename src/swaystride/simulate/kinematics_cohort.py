@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -14,15 +14,14 @@ from swaystride.simulate.kinematics_parameters import (
     STUDY,
     KinematicsCohort,
     Measuring,
-    RunnerScatter,
     RunningHistory,
 )
 from swaystride.simulate.running_body import RunnerBody, runner_body, usual_shares, usual_shoe
 from swaystride.simulate.running_manner import RunnerManner
 from swaystride.simulate.running_markers import marker_places
+from swaystride.simulate.running_scatter import MOST_SD, drawn_manner
 from swaystride.simulate.running_sensors import place_point_m
 from swaystride.simulate.seeds import generator
-from swaystride.units import RAD_PER_DEG
 
 Array = NDArray[np.float64]
 
@@ -33,8 +32,6 @@ KINDS: Final = {
     "standing_imu": "standing.h5",
     "standing_markers": "standing.c3d",
 }
-#: Nobody differs from the usual runner by more standard deviations than this [N].
-_MOST_SD: Final = 2.0
 #: A typical pace is not faster than that of a race, min/km [N].
 _LEAST_SLOWER: Final = 0.1
 #: Nobody ran regularly before this age, years [N].
@@ -104,24 +101,11 @@ def manner_of(participant: str, trial: str, cohort: KinematicsCohort, seed: int)
     -------
     RunnerManner
     """
-    scatter = cohort.person
-    names = [f.name for f in fields(RunnerScatter) if f.name != "trial_share"]
-    rng = generator(seed, STUDY, participant, "manner")
-    own = np.clip(rng.standard_normal(len(names)), -_MOST_SD, _MOST_SD)
-    rng = generator(seed, STUDY, participant, f"trial {trial}", "manner")
-    then = np.clip(rng.standard_normal(len(names)), -_MOST_SD, _MOST_SD)
-    values = {}
-    for name, z in zip(names, (own + scatter.trial_share * then).tolist(), strict=True):
-        changed = getattr(scatter, name) * z
-        if name.endswith("_log_sd"):
-            values[name.removesuffix("_log_sd")] = float(np.exp(changed))
-        elif name.endswith("_sd_deg"):
-            values[name.removesuffix("_sd_deg") + "_rad"] = changed * RAD_PER_DEG
-        elif name.endswith("_sd_m"):
-            values[name.removesuffix("_sd_m") + "_m"] = changed
-        else:
-            values[name.removesuffix("_sd")] = changed
-    return RunnerManner(**values)
+    return drawn_manner(
+        cohort.person,
+        generator(seed, STUDY, participant, "manner"),
+        generator(seed, STUDY, participant, f"trial {trial}", "manner"),
+    )
 
 
 def true_measures(body: RunnerBody, measuring: Measuring) -> dict[str, float]:
@@ -212,7 +196,7 @@ def _person(name: str, sex: str, age: float, cohort: KinematicsCohort, seed: int
         if measure != "leg_length":
             sd = cohort.measuring.width_sd_m
         for side in ("right", "left"):
-            error = sd * float(np.clip(rng.standard_normal(), -_MOST_SD, _MOST_SD))
+            error = sd * float(np.clip(rng.standard_normal(), -MOST_SD, MOST_SD))
             row[f"{measure}_{side}_m"] = round(true + error, 3)
     history = reported_history(cohort.history, age, generator(seed, STUDY, name, "history"))
     return row | history
@@ -238,7 +222,7 @@ def reported_history(
         Columns of Table 4.1: years such as ``5`` or ``>15``, pace such as ``4:40`` or
         ``4:50-5:10``, time such as ``20:22`` or nothing.
     """
-    z = np.clip(rng.standard_normal(3), -_MOST_SD, _MOST_SD)
+    z = np.clip(rng.standard_normal(3), -MOST_SD, MOST_SD)
     with_range, no_race = rng.random(2) < (history.pace_range_share, history.no_race_share)
     years = history.years_median * np.exp(history.years_log_sd * z[0])
     whole = max(1, round(min(float(years), age_years - _FIRST_AGE)))

@@ -12,6 +12,7 @@ from swaystride.errors import ConfigurationError
 from swaystride.simulate.intensity_people import Bodies, PatientGroup
 from swaystride.simulate.running_manner import RunVariability
 from swaystride.simulate.running_markers import CameraErrors, marker_places
+from swaystride.simulate.running_scatter import RunnerScatter
 from swaystride.simulate.running_sensors import Mounting
 from swaystride.simulate.running_standing import StandingManner
 
@@ -127,59 +128,6 @@ class Measuring:
     width_sd_m: float
     marker_radius_m: float
     base_plate_m: float
-
-
-@dataclass(frozen=True)
-class RunnerScatter:
-    """How runners differ from the usual one of their speed.
-
-    Names are those of :class:`~swaystride.simulate.running_manner.RunnerManner`: ``_log_sd`` is the
-    scatter of the logarithm of a factor, ``_sd_deg``, ``_sd_m`` and ``_sd`` that of what is added.
-
-    Parameters
-    ----------
-    stride_time_log_sd, impact_log_sd, arrest_log_sd, quiet_rate_log_sd : float
-        Timing and impacts.
-    duty_factor_sd, contact_pitch_sd_deg, toe_off_pitch_sd_deg, swing_pitch_sd_deg : float
-        Stance, and pitch of the foot.
-    toe_out_sd_deg, foot_roll_log_sd, step_width_sd_m : float
-        Feet in the other planes.
-    hip_range_log_sd, knee_range_log_sd : float
-        Flexion that the swing aims at.
-    hip_rotation_range_log_sd, knee_adduction_range_log_sd, knee_rotation_range_log_sd : float
-        Legs in the other planes.
-    pelvis_range_log_sd, pelvis_tilt_sd_deg, trunk_range_log_sd, trunk_lean_sd_deg : float
-        Pelvis and trunk.
-    arm_swing_log_sd, elbow_sd_deg, soft_tissue_log_sd : float
-        Arms, and wobble of soft tissue.
-    trial_share : float
-        Scatter between the trials of a person over that between people.
-    """
-
-    stride_time_log_sd: float
-    impact_log_sd: float
-    arrest_log_sd: float
-    quiet_rate_log_sd: float
-    duty_factor_sd: float
-    contact_pitch_sd_deg: float
-    toe_off_pitch_sd_deg: float
-    swing_pitch_sd_deg: float
-    toe_out_sd_deg: float
-    foot_roll_log_sd: float
-    step_width_sd_m: float
-    hip_range_log_sd: float
-    knee_range_log_sd: float
-    hip_rotation_range_log_sd: float
-    knee_adduction_range_log_sd: float
-    knee_rotation_range_log_sd: float
-    pelvis_range_log_sd: float
-    pelvis_tilt_sd_deg: float
-    trunk_range_log_sd: float
-    trunk_lean_sd_deg: float
-    arm_swing_log_sd: float
-    elbow_sd_deg: float
-    soft_tissue_log_sd: float
-    trial_share: float
 
 
 @dataclass(frozen=True)

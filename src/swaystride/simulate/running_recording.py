@@ -38,11 +38,15 @@ class SensorChunk:
         Index of its first sample in the recording.
     acc_m_s2, gyr_rad_s : ndarray, shape (n_sensors, 3, n)
         As the sensors report.
+    ideal : ndarray, shape (n_sensors, 6, n), or None
+        What perfect sensors in axes of their segment would report at the same instants, if it was
+        asked for: see :func:`ideal_signals`.
     """
 
     first: int
     acc_m_s2: NDArray[np.float32]
     gyr_rad_s: NDArray[np.float32]
+    ideal: NDArray[np.float32] | None = None
 
 
 def n_samples(motion: RunningMotion, rate_hz: float) -> int:
@@ -65,6 +69,7 @@ def recorded(
     rate_hz: float,
     rng: np.random.Generator,
     chunk_s: float = 20.0,
+    with_ideal: bool = False,
 ) -> Iterator[SensorChunk]:
     """Record a motion, part by part, so that the memory does not grow with its length.
 
@@ -83,6 +88,8 @@ def recorded(
         Source of the noise.
     chunk_s : float
         Length of the parts; it decides the order of the random numbers.
+    with_ideal : bool
+        Whether to hand out the signals of perfect sensors as well; all else stays the same.
 
     Yields
     ------
@@ -112,7 +119,8 @@ def recorded(
                 output_rate_hz=rate_hz,
                 rng=rng,
             )
-        yield SensorChunk(first, acc, gyr)
+        kept = ideal[..., reach::factor][..., :n].astype(np.float32) if with_ideal else None
+        yield SensorChunk(first, acc, gyr, kept)
 
 
 def with_midpoints(signals: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scipy.stats import f as f_distribution
+from scipy.special import fdtri
 
 
 def prediction_factor(n_samples: int, probability: float = 0.95) -> float:
@@ -24,5 +24,5 @@ def prediction_factor(n_samples: int, probability: float = 0.95) -> float:
     5.991
     """
     n = n_samples
-    quantile = float(f_distribution.ppf(probability, 2, n - 2))
+    quantile = float(fdtri(2, n - 2, probability))
     return 2.0 * (n**2 - 1) / (n * (n - 2)) * quantile

@@ -8,6 +8,7 @@ of four or five markers; medial landmarks are in the static trials only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -142,10 +143,16 @@ def runner_file(folder: Path, name: str) -> Path:
     RecordingError
         If the manifest does not list it.
     """
-    paths = {path.name: path for path in verified_files(folder, MARKERS)}
+    paths = _verified(folder)
     if name not in paths:
         raise RecordingError("not in the manifest", file=name, expected=", ".join(paths))
     return paths[name]
+
+
+@cache
+def _verified(folder: Path) -> dict[str, Path]:
+    """Files by their names; every byte is checked once."""
+    return {path.name: path for path in verified_files(folder, MARKERS)}
 
 
 def read_markers(path: Path) -> MarkerRecording:

@@ -1,4 +1,4 @@
-"""Significance of the ranges of motion: SciPy's t, Holm by hand, the mixed model of a balanced design."""
+"""Significance of the ranges of motion: SciPy's t, and the mixed model of a balanced design."""
 
 import kinematics_results as made
 import numpy as np
@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import ttest_1samp, ttest_rel
 
 from import_graph import REPOSITORY
-from swaystride.studies.kinematics.range_tests import holm, mixed_test, paired_test, table_4_4
+from swaystride.studies.kinematics.range_tests import mixed_test, paired_test, table_4_4
 from swaystride.studies.kinematics.table_options import TableOptions
 from swaystride.studies.kinematics.tables import range_features
 
@@ -57,13 +57,6 @@ def test_in_a_balanced_design_the_mixed_model_tests_the_means_of_the_runners():
     expected = ttest_1samp(frame.groupby("participant")["difference"].mean(), 0.0)
     assert found["p_mixed"] == pytest.approx(expected.pvalue, rel=1e-4)
     assert found["df_mixed"] == pytest.approx(4, rel=1e-3)
-
-
-def test_holm_by_hand():
-    """0.01·3, then max with 0.02·2, then max with 0.5·1; a missing value is not counted."""
-    assert holm(np.array([0.5, 0.01, np.nan, 0.02])).tolist() == pytest.approx(
-        [0.5, 0.03, np.nan, 0.04], nan_ok=True
-    )
 
 
 def test_differences_below_the_scatter_are_not_significant():

@@ -45,10 +45,22 @@ KINEMATICS = {
     "kinematics_figure": 9,
     "kinematics_truth_table": 3,
 }
+EXPERIENCE = {
+    "experience_design": 1,
+    "experience_ratings": 1,
+    "experience_answers": 1,
+    "experience_observations": 1,
+    "experience_associations": 1,
+    "experience_within_runs": 1,
+    "experience_quality": 1,
+    "experience_table": 10,
+    "experience_figure": 9,
+    "experience_truth_table": 4,
+}
 SHARED = {
-    "parameter_sections": 5 + 4 + 9 + 7,
-    "study_parameters": 4,
-    "study_page": 4,
+    "parameter_sections": 5 + 4 + 9 + 7 + 11,
+    "study_parameters": 5,
+    "study_page": 5,
     "cohort_page": 1,
     "provenance": 1,
     "all": 1,
@@ -59,15 +71,19 @@ SHARED = {
 STAGES = ("simulate", "import", "estimate", "measure", "perturbation", "course", "truth")
 
 
+#: Stages of the experience study that each run has.
+RUN_STAGES = ("simulate", "import", "metrics", "truth")
+
+
 def per_participant(study, n):
     return {f"{study}_{stage}": n for stage in ("simulate", "import", "metrics")}
 
 
 @pytest.mark.parametrize(
-    ("cohort", "n_feedback", "n_intensity", "n_runners"),
-    [("synthetic", 19, 10, 6), ("synthetic_demo", 6, 4, 2)],
+    ("cohort", "n_feedback", "n_intensity", "n_runners", "n_runs"),
+    [("synthetic", 19, 10, 6, 23), ("synthetic_demo", 6, 4, 2, 5)],
 )
-def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_runners):
+def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_runners, n_runs):
     planned = sandbox.planned("--config", f"cohort={cohort}", "--", "all")
     assert planned == {
         **FEEDBACK,
@@ -80,11 +96,13 @@ def test_all_has_the_expected_jobs(sandbox, cohort, n_feedback, n_intensity, n_r
         "imu_design_stride_errors": n_runners,
         **KINEMATICS,
         **{f"kinematics_{stage}": n_runners for stage in STAGES},
+        **EXPERIENCE,
+        **{f"experience_{stage}": n_runs for stage in RUN_STAGES},
     }
-    assert sum(planned.values()) < 300
+    assert sum(planned.values()) < 450
 
 
-STUDIES = ("feedback", "intensity", "imu_design", "kinematics")
+STUDIES = ("feedback", "intensity", "imu_design", "kinematics", "experience")
 
 
 @pytest.mark.parametrize("study", STUDIES)
@@ -98,7 +116,7 @@ def test_one_study_is_built_without_the_others_and_the_page_of_the_cohort(sandbo
 
 def test_variants_share_the_stages_before_their_first_own(sandbox):
     planned = sandbox.planned("variants")
-    assert planned["study_page"] == 3 + 2 + 2 + 4
+    assert planned["study_page"] == 3 + 2 + 2 + 4 + 3
     assert planned["feedback_import"] == 19
     # printed and recommended measure anew; n_coding_reset shares the measures of printed
     assert planned["feedback_metrics"] == 2 * 19
@@ -109,6 +127,30 @@ def test_variants_share_the_stages_before_their_first_own(sandbox):
     assert planned["imu_design_metrics"] == 2 * 6
     # the errors of all methods stand on every page
     assert planned["imu_design_stride_errors"] == 6
+    # recordings of runs are deleted after use: all variants of a run are measured before
+    assert planned["experience_import"] == 23
+    assert planned["experience_metrics"] == 3 * 23
+
+
+def test_a_lab_with_runs_is_imported_run_by_run(new_checkout):
+    """Units and files come from runs.tsv; what is named and missing is the import's to say."""
+    sandbox = new_checkout("runs")
+    folder = sandbox.root / "data/raw/my_lab/experience"
+    (folder / "A").mkdir(parents=True)
+    people = "participant\tsex\tage_years\theight_m\tmass_kg\nA\tF\t30\t1.7\t60\n"
+    (folder / "participants.tsv").write_text(people, encoding="utf-8")
+    rows = ["participant\trun\timu\tstanding\twalking"]
+    rows += [f"A\t{run}\tA/{run}.h5\tA/{run}_s.h5\tA/{run}_w.h5" for run in ("1", "2")]
+    (folder / "runs.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    (folder / "A/1.h5").touch()
+    path = sandbox.root / "config/config.yaml"
+    text = path.read_text(encoding="utf-8").replace("  # my_lab:", "  my_lab:")
+    path.write_text(text, encoding="utf-8")
+    target = "results/my_lab/experience/printed/models/associations.parquet"
+    (folder / "questionnaires.tsv").touch()
+    planned = sandbox.planned("--config", "cohort=my_lab", "--", target)
+    assert planned["experience_import"] == planned["experience_metrics"] == 2
+    assert not {"experience_simulate", "experience_ratings"} & set(planned)
 
 
 def test_one_table_can_be_asked_for_alone(sandbox):

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from swaystride.presentation.figure_style import OKABE_ITO, new_figure
 from swaystride.studies.feedback.plan import FEATURES
@@ -154,7 +154,7 @@ def figure_exemplar_predicted(predictions: pd.DataFrame, confidence_level: float
         on the log scale).
     confidence_level : float
     """
-    z = float(norm.ppf(0.5 + confidence_level / 2))
+    z = float(ndtri(0.5 + confidence_level / 2))
     fig = new_figure("double", height_mm=62)
     axes = fig.subplots()
     _shade_blocks(axes, predictions)
@@ -242,7 +242,7 @@ def figure_residuals(predictions: pd.DataFrame) -> Figure:
         top.set_title(f"ln {label}")
         top.set_xlabel("fitted")
         ordered = np.sort(residual) / residual.std()
-        quantile = norm.ppf((np.arange(ordered.size) + 0.5) / ordered.size)
+        quantile = ndtri((np.arange(ordered.size) + 0.5) / ordered.size)
         bottom.plot(quantile, ordered, ".", **dots)
         bottom.axline((0, 0), slope=1, color=OKABE_ITO["black"], linewidth=0.6)
         bottom.set_xlabel("normal quantile")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scipy.stats import ttest_rel
-from statsmodels.stats.multitest import multipletests
+from scipy.special import stdtr
 
 from swaystride.errors import ModelError
 from swaystride.stats.mixed_model import fit_mixed_model
+from swaystride.stats.multiple_tests import holm
 from swaystride.studies.kinematics.plan import POOR_OPTICAL_ANGLES, RANGE_ANGLES, SIDES
 from swaystride.studies.kinematics.summaries import participant_error
 from swaystride.studies.kinematics.table_options import TableOptions
@@ -88,8 +88,9 @@ def paired_test(trials: pd.DataFrame) -> dict[str, float]:
     difference = (trials["erkf"] - trials["optic"]).to_numpy(dtype=float)
     if difference.size < 2 or np.ptp(difference) == 0.0:
         return {"t": np.nan, "df": np.nan, "p": np.nan}
-    test = ttest_rel(trials["erkf"], trials["optic"])
-    return {"t": float(test.statistic), "df": float(test.df), "p": float(test.pvalue)}
+    df = difference.size - 1
+    t = difference.mean() / (difference.std(ddof=1) / np.sqrt(difference.size))
+    return {"t": float(t), "df": float(df), "p": float(2.0 * stdtr(df, -abs(t)))}
 
 
 def mixed_test(trials: pd.DataFrame) -> dict[str, float]:
@@ -116,22 +117,3 @@ def mixed_test(trials: pd.DataFrame) -> dict[str, float]:
     except ModelError:
         return missing
     return {"p_mixed": float(row["p"]), "df_mixed": float(row["df"])}
-
-
-def holm(p: np.ndarray) -> np.ndarray:
-    """P-values corrected for their number (Holm 1979); missing ones are not counted.
-
-    Parameters
-    ----------
-    p : ndarray
-
-    Examples
-    --------
-    >>> holm(np.array([0.01, np.nan, 0.04])).tolist()
-    [0.02, nan, 0.04]
-    """
-    corrected = np.full(p.shape, np.nan)
-    known = np.isfinite(p)
-    if known.any():
-        corrected[known] = multipletests(p[known], method="holm")[1]
-    return corrected

@@ -1,0 +1,1 @@
+"""Running kinematics and positive experience (dissertation, chapter 5)."""
