@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path, PurePosixPath
 
 import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
+
+# The processes of a run share the processors: threads of linear algebra would wait for each other,
+# ten times as long as they compute. Set before NumPy is loaded; processes of xdist inherit it.
+for _library in ("OMP", "OPENBLAS"):
+    os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 # How long an example takes says nothing about its result: timing belongs in benchmarks.
 settings.register_profile("no_deadline", deadline=None)
