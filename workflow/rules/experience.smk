@@ -25,6 +25,8 @@ rule experience_design:
         "logs/{cohort}/experience/design.log",
     wildcard_constraints:
         cohort=project.simulated_pattern,
+    # every import waits for it
+    priority: 30
     conda:
         "../envs/swaystride.yaml"
     params:

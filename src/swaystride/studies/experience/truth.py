@@ -55,7 +55,8 @@ def truth_rows(
     -------
     DataFrame
         ``run``, ``measure``, ``estimate``, ``truth``, ``error``: all means of the run; range of the
-        bones against the same estimates (``hip_range_deg_bone``); ``initial_contact_bias_ms`` and
+        bones and the unfiltered peak of the shin against the same estimates
+        (``hip_range_deg_bone``, ``peak_tibial_g_unfiltered``); ``initial_contact_bias_ms`` and
         ``_sd_ms``, ``toe_off_…``; ``alignment_<sensor>_vertical_deg`` and ``…_ml_deg``. No rows for
         a run that is left out.
     """
@@ -67,6 +68,8 @@ def truth_rows(
     steady = true_strides[true_strides["is_steady"]]
     for joint, value in bone_ranges_deg(motion, steady).items():
         rows.append((f"{joint}_range_deg_bone", float(estimates[f"{joint}_range_deg"]), value))
+    unfiltered = float(true_values["unfiltered_peak_tibial_g"])
+    rows.append(("peak_tibial_g_unfiltered", float(estimates["peak_tibial_g"]), unfiltered))
     kept = strides[strides["is_steady"] & strides["is_valid"]]
     for event, column in (("initial_contact", "start_s"), ("toe_off", "toe_off_s")):
         lag_ms = 1e3 * event_errors_s(kept, steady, column)

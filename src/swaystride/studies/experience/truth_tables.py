@@ -193,7 +193,7 @@ def unit_of(measure: str) -> str:
     >>> unit_of("peak_tibial_g_per_kg"), unit_of("hip_range_deg_bone"), unit_of("duty_factor")
     ('g/kg', '°', '')
     """
-    name = measure.removesuffix("_bone")
+    name = measure.removesuffix("_bone").removesuffix("_unfiltered")
     return next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
 
 
