@@ -151,12 +151,16 @@ rule experience_recovery_variant:
         resamples=RECOVERY_RESAMPLES,
         start_s=experience.recovery_start_s,
         mean=experience.recovery_mean,
+        # errors of the printed toe-off are in its measures: said, not judged
+        reported=lambda wildcards: (
+            "--reported" if wildcards.variant == project.base_variant else ""
+        ),
     shell:
         "python scripts/experience_recovery.py --parameters {input.parameters:q}"
         " --runs {input.observations:q} --truth-folder {params.truth:q}"
         " --printed {params.printed:q} --variant {wildcards.variant:q} --seed {params.seed}"
         " --cohorts {params.cohorts} --resamples {params.resamples}"
-        " --start-s {params.start_s} --mean {params.mean} --output {output:q}"
+        " --start-s {params.start_s} --mean {params.mean} {params.reported} --output {output:q}"
         " 2>&1 | tee {log:q}"
 
 
