@@ -15,9 +15,6 @@ from swaystride.studies.experience.table_options import table_options
 from swaystride.studies.experience.table_styles import TABLE_STYLES
 from swaystride.studies.experience.text_table import study5_text
 
-#: Definitions: the same for every cohort.
-NOT_OF_A_COHORT = ("table_5_2",)
-
 
 def main() -> None:
     """Parse paths, call the library, write the files."""
@@ -85,7 +82,7 @@ def main() -> None:
     TABLE_STYLES[name].write(
         build[name](),
         arguments.output,
-        simulated=arguments.simulated and name not in NOT_OF_A_COHORT,
+        simulated=arguments.simulated,
     )
 
 
